@@ -2,7 +2,8 @@
 //
 // Names: settled/<N> for N discs that have come to rest (3 s, 10,000 of them 4.5 s), with the residual of
 // contact by default, and settled_to_<residual>; collapse/<N> for the second half of their fall; pouring/<N>
-// for rows that fall one by one onto those that lie already, all but the last quarter; <name>_two_threads.
+// for rows that fall one by one onto those that lie already, all but the last quarter; <name>_two_threads;
+// laden_tray/<N> for N discs in a row on a tray that a hinge holds, all of which answer together.
 // Counters: residual (the largest of the steps timed), contacts.
 
 #include <carom/carom.h>
@@ -77,6 +78,33 @@ void pouring(benchmark::State& state) {
   time_steps(state, discs, {.step = step}, 0.75 * end - 0.5);
 }
 
+/// Its cost should grow as that of discs on a floor.
+void laden_tray(benchmark::State& state) {
+  using namespace carom::planar;
+  const int count = count_of(state);
+  constexpr double pitch = 0.11, radius = 0.05;
+  const double width = pitch * count;
+  carom::System system;
+  system.add(Gravity{{0.0, -scenes::discs_gravity}});
+  system.set_default_law({.friction = 0.5, .normal_restitution = 0.0, .tangential_restitution = 0.0});
+  const carom::BodyId tray =
+      system.add(RigidBody{.mass = box(count, width, 2.0 * radius), .position = {0.0, -radius}});
+  system.add(Polygon{
+      .body = tray,
+      .vertices = {
+          {-0.5 * width, -radius}, {0.5 * width, -radius}, {0.5 * width, radius}, {-0.5 * width, radius}}});
+  system.add(Revolute{.from = {carom::ground, {0.0, -radius}}, .to = tray});
+  for (int i = 0; i < count; ++i) {
+    const carom::Vec<2> place(pitch * (i - 0.5 * (count - 1)), radius);
+    const carom::BodyId body = system.add(RigidBody{.mass = disc(1.0, radius), .position = place});
+    system.add(Disc{.body = body, .radius = radius});
+  }
+  carom::Simulation simulation(system, carom::TimeStepping{.step = step});
+  simulation.run_until(10 * step);
+  for (auto _ : state) simulation.step();
+  state.counters["contacts"] = static_cast<double>(simulation.report().contacts.size());
+}
+
 // Steps go on in time: as many as are timed at rest, and of the collapse those of half a second.
 void sizes(benchmark::internal::Benchmark* of) {
   of->Arg(100)->Arg(500)->Arg(2000)->Arg(10000)->Iterations(500)->Unit(benchmark::kMillisecond);
@@ -86,6 +114,7 @@ BENCHMARK_CAPTURE(settled_to, 1e-8, 1e-8)->Apply(sizes);
 BENCHMARK_CAPTURE(settled_to, 1e-4, 1e-4)->Apply(sizes);
 BENCHMARK(collapse)->Apply(sizes);
 BENCHMARK(pouring)->Apply(sizes);
+BENCHMARK(laden_tray)->Arg(100)->Arg(500)->Arg(2000)->Iterations(100)->Unit(benchmark::kMillisecond);
 // The wall clock, as the processor time of both threads is the sum.
 BENCHMARK(settled)->Name("settled_one_thread")->Arg(2000)->Iterations(500)->UseRealTime();
 BENCHMARK(settled_two_threads)->Arg(2000)->Iterations(500)->UseRealTime();

@@ -166,8 +166,8 @@ void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std
 
 /// Scales rows of heavy bodies, which answer little, to those of light ones: a row is to be told from
 /// rounding by what it is made of itself. By powers of two, so that nothing is rounded, and coarse ones, so
-/// that rows of like masses stay as they are.
-void ActiveSet::scale_rows() {
+/// that rows of like masses stay as they are. \param matrix_too else of the unknowns alone
+void ActiveSet::scale_rows(bool matrix_too) {
   constexpr int coarse = 16;  // in powers of two
   std::vector<int>& exponents = memory_->exponents;
   if (exponents.empty()) return;
@@ -177,18 +177,23 @@ void ActiveSet::scale_rows() {
     const int up = (most - exponents[i]) / coarse * coarse;
     if (up == 0) continue;
     memory_->unknown[i] = std::ldexp(memory_->unknown[i], up);
+    if (!matrix_too) continue;
     double* const row = memory_->factors.matrix() + i * n;
     for (std::size_t j = 0; j < n; ++j) row[j] = std::ldexp(row[j], up);
   }
 }
 
-/// Solves the equations of the group for the unknowns.
-bool ActiveSet::solve() {
+/// Solves the equations of the group for the unknowns. \param again they have been solved for other ones: by
+/// the same factors, with the same bits
+bool ActiveSet::solve(bool again) {
   const std::size_t n = memory_->rows.size();
-  memory_->factors.reset(n);
-  memory_->delassus.write(memory_->factors.matrix());
-  if (n > 1) scale_rows();
-  return memory_->factors.solve(dependent, memory_->unknown);
+  if (!again) {
+    memory_->factors.reset(n);
+    memory_->delassus.write(memory_->factors.matrix());
+  }
+  if (n > 1) scale_rows(!again);
+  return again ? memory_->factors.solve_again(memory_->unknown)
+               : memory_->factors.solve(dependent, memory_->unknown);
 }
 
 /// Takes out of the accelerations what rounding of the equations has left in the rows. The response of a
@@ -206,7 +211,7 @@ void ActiveSet::refine(double size, double* acceleration) {
       unknown[row] = -at.acceleration(row_of(memory_->rows[row], at), acceleration);
       largest = std::max(largest, std::abs(unknown[row]));
     }
-    if (largest <= rounding * size || !solve()) return;
+    if (largest <= rounding * size || !solve(true)) return;
     memory_->delassus.add_response(unknown, acceleration);
   }
 }
@@ -244,7 +249,7 @@ bool ActiveSet::react(std::size_t first, std::size_t last, double* acceleration)
     unknown[i] = -at.acceleration(row_of(rows[i], at), acceleration);
     size = std::max(size, std::abs(unknown[i]));
   }
-  const bool solved = solve();
+  const bool solved = solve(false);
   const std::span<const ActiveContact> group(contacts_.data() + first, last - first);
   if (least_ && factors.rank() < n) memory_->least_forces.find(contacts_, group, rows, factors, unknown);
   for (std::size_t k = 0; k < factors.rank(); ++k) {
@@ -302,6 +307,7 @@ bool ActiveSet::corrections(const Assembly& assembly, const double* velocity, do
   bool any = false;
   for_groups([&](std::size_t first, std::size_t last) {
     state_equations(assembly, first, last, false);
+    bool solved = false;
     for (const bool position : {true, false}) {
       double* const out = position ? of_position : of_velocity;
       unknown.resize(rows.size());
@@ -313,7 +319,8 @@ bool ActiveSet::corrections(const Assembly& assembly, const double* velocity, do
         if (!(position && rows[i].tangent)) unknown[i] -= at.times(row, out);
         any = any || unknown[i] != 0.0;
       }
-      if (solve()) memory_->delassus.add_response(unknown, out);
+      solved = solve(solved);
+      if (solved) memory_->delassus.add_response(unknown, out);
     }
   });
   return any;

@@ -100,8 +100,8 @@ private:
   [[nodiscard]] double lever(std::size_t contact) const;
   [[nodiscard]] static int row_of(const Row& row, const Constraint& at);
   void state_equations(const Assembly& assembly, std::size_t first, std::size_t last, bool slips);
-  void scale_rows();
-  [[nodiscard]] bool solve();
+  void scale_rows(bool matrix_too);
+  [[nodiscard]] bool solve(bool again);
   void refine(double size, double* acceleration);
   void add_dry_friction(std::size_t first, std::size_t last, double* acceleration);
   bool react(std::size_t first, std::size_t last, double* acceleration);

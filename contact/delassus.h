@@ -66,6 +66,15 @@ public:
   void write(double* matrix) const;
   /// x += scale B D^T P. \param x velocities of all bodies
   void add_response(std::span<const double> impulses, double* x, double scale = 1.0) const;
+  /// Calls f(reach, answer) for the velocities that a unit impulse along a column changes: some that begin
+  /// with the first of a reach, a number for each. Not of factors.
+  template <class F>
+  void for_reaches(std::size_t column, F&& f) const {
+    if (!common_.empty()) return f(common_, responses_.data() + column * common_.size());
+    for (const Part& part : parts(column)) f(part.v, responses_.data() + part.begin);
+  }
+  /// True if columns act by other loads than their rows (BodyResponse::take_loads()).
+  [[nodiscard]] bool has_other_loads() const { return !loads_.empty(); }
   /// Velocities that it may write, from the first one of all bodies on.
   [[nodiscard]] Index reach_end() const;
 
@@ -81,7 +90,6 @@ private:
   };
   [[nodiscard]] int slot_of(const Constraint& constraint, std::size_t body, const BodyResponse& response);
   [[nodiscard]] int add_slot(const Constraint::Block& block, const BodyResponse& response);
-  void write_masses(ResponseFactors& factors) const;
   void add_factored_response(std::span<const double> impulses, double* x, double scale) const;
   [[nodiscard]] int build_of_one_body(const BodyResponse& response);
   [[nodiscard]] bool find_common_reach(BodyResponse& response);

@@ -1,6 +1,7 @@
 // Problem: hand a large island to solvers as the rows of its constraints and the masses of its bodies.
 
 #include <carom/contact/delassus.h>
+#include <carom/contact/factor_row.h>
 
 namespace carom {
 
@@ -29,21 +30,6 @@ inline int Delassus::slot_of(const Constraint& constraint, std::size_t body, con
 }
 
 namespace {
-
-/// Row of factors: blocks of three numbers, the last of which a body without spin does not have.
-/// \param h the row of the constraint
-void write_row(const Constraint& at, const double* h, ResponseFactors::Row& row) {
-  constexpr int of_planar_body = ResponseFactors::columns;
-  double* to = row.h.data();
-  row.h = {};
-  for (int b = 0; b < at.bodies; ++b, to += of_planar_body) {
-    const bool turns = at.blocks[static_cast<std::size_t>(b)].columns == of_planar_body;
-    to[0] = h[0];
-    to[1] = h[1];
-    if (turns) to[2] = h[2];
-    h += turns ? 3 : 2;
-  }
-}
 
 /// Both rows of a contact between two bodies that turn, the usual case in a pile.
 void write_rows_of_two(const Constraint& at, const std::array<int, 3>& slots, ResponseFactors::Row* rows) {
@@ -93,22 +79,14 @@ bool Delassus::build_factors(std::span<const ImpulseDirection> directions, Range
     for (; r < some.end && directions[r].constraint == &at; ++r) {
       ResponseFactors::Row& row = factors.rows[r];
       row.slot = {first, second, third};
-      write_row(at, at.row(directions[r].row), row);
+      write_factor_row(at, at.row(directions[r].row), row);
     }
   }
   if (factored_ && some.end < directions.size()) return true;
   // Bodies are no slots until the next problem.
   for (const Slot& own : slots_) slot_of_body_[own.block.body] = ResponseFactors::no_slot;
-  if (factored_) write_masses(factors);
+  if (factored_) write_factor_masses(slots_, factors);
   return factored_;
-}
-
-void Delassus::write_masses(ResponseFactors& factors) const {
-  factors.inverse_mass.clear();
-  for (const Slot& slot : slots_) {
-    factors.inverse_mass.insert(factors.inverse_mass.end(), slot.inverse_mass.begin(),
-                                slot.inverse_mass.end());
-  }
 }
 
 void Delassus::add_factored_response(std::span<const double> impulses, double* x, double scale) const {

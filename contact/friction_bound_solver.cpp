@@ -96,6 +96,7 @@ void allow(const ContactProblem& problem, const std::vector<double>& null, std::
 
 /// Changes of the answer `found_` that the law leaves free and that move nothing, orthonormal.
 void FrictionBoundSolver::find_null_space(const ContactProblem& problem) {
+  if (problem.is_factored()) return find_null_space(problem.dense());
   constexpr double dependent = 1e-11;  // pivots below this part of the largest are rounding
   const auto n = static_cast<std::size_t>(problem.rows());
   null_.clear();

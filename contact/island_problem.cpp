@@ -53,6 +53,30 @@ void demand_room(std::size_t constraints, int rows) {
                     {});
 }
 
+/// Whether sweeps are to solve constraints of bodies that answer together: very many contacts. Few of them
+/// are worth exact answers, and along a chain with friction in its joints impulses creep from row to row.
+bool are_for_sweeps(std::span<const Constraint> constraints) {
+  const auto in_joints = static_cast<std::size_t>(
+      std::count_if(constraints.begin(), constraints.end(),
+                    [](const Constraint& constraint) { return constraint.has_dry_friction(); }));
+  return in_joints < factored_constraints &&
+         constraints.size() - in_joints > static_cast<std::size_t>(most_exact_contacts);
+}
+
+/// Whether their answers take no more room than the largest W in full.
+bool answers_have_room(std::span<const ImpulseDirection> directions, const BodyResponse& response) {
+  constexpr std::size_t most = std::size_t{most_dense_rows} * most_dense_rows;
+  std::size_t numbers = 0;
+  for (const ImpulseDirection& direction : directions) {
+    const Constraint& at = *direction.constraint;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b) {
+      const Index body = at.blocks[b].body;
+      if (response.alone(body).mass == nullptr) numbers += response.reach(body).size();
+    }
+  }
+  return numbers <= most;
+}
+
 /// W in full after all: bodies do not answer for themselves. The sets stay.
 /// \param sets scratch
 void make_dense(std::vector<RowSet>& sets, ContactProblem& problem) {
@@ -183,7 +207,13 @@ void IslandProblem::write_rows(Range some, const double* velocity_before) {
 void IslandProblem::respond(BodyResponse& response) {
   if (problem_.is_factored()) {
     const auto rows = static_cast<Index>(problem_.rows());
+    scratch_.bound.clear();
+    problem_.factors().bound.clear();
     if (delassus_.build_factors(directions_, {0, rows}, response, problem_)) return problem_.group();
+    if (are_for_sweeps(constraints_) && answers_have_room(directions_, response)) {
+      delassus_.build(directions_, response);
+      if (scratch_.bound.write(directions_, delassus_, response, problem_)) return problem_.group();
+    }
     demand_room(constraints_.size(), problem_.rows());
     make_dense(scratch_.sets, problem_);
   }
@@ -217,7 +247,7 @@ void IslandProblem::slide(std::size_t constraint, double ratio) {
 }
 
 void IslandProblem::add_velocities(double* velocity) {
-  if (!problem_.is_factored()) return map().add_velocities(velocity);
+  if (!problem_.is_factored() || problem_.factors().any_bound()) return map().add_velocities(velocity);
   std::vector<double>& response = answer_.response;
   if (response.empty()) problem_.factors().respond(answer_.impulse, response);
   const double* change = response.data();
@@ -229,8 +259,9 @@ void IslandProblem::add_velocities(double* velocity) {
 
 void IslandProblem::set_free_velocity(const double* velocity_free) {
   if (problem_.is_factored()) {
-    return set_free_velocity_of_slots(directions_, delassus_.slots(), velocity_free, scratch_.given,
-                                      scratch_.slot_velocity, problem_);
+    const bool bound = problem_.factors().any_bound();
+    return set_free_velocity_of_slots(directions_, bound ? scratch_.bound.slots() : delassus_.slots(),
+                                      velocity_free, scratch_.given, scratch_.slot_velocity, problem_);
   }
   const RowsBefore before{before_, restitution_};
   if (set_free_velocity_of_contact(constraints_, velocity_free, before, problem_)) return;

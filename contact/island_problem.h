@@ -7,6 +7,7 @@
 /// B the response of the bodies (contact/delassus.h); to b in normal direction Constraint::allowed_approach
 /// is added.
 
+#include <carom/contact/bound_factors.h>
 #include <carom/contact/delassus.h>
 #include <carom/contact/impulse_map.h>
 #include <carom/contact/solvers/contact_problem.h>
@@ -126,6 +127,7 @@ private:
     std::vector<RowSet> sets;           // while W is made in full
     std::vector<double> slot_velocity;  // of bodies
     std::vector<double> given;          // part of b without velocities of bodies at the end
+    BoundFactors bound;                 // where bodies answer together
   };
 
   IslandOptions options_;

@@ -6,6 +6,7 @@
 
 #include <carom/contact/contact_velocity.h>
 #include <carom/contact/delassus.h>
+#include <carom/contact/solvers/sweep_budget.h>
 #include <carom/core/constraint.h>
 #include <carom/core/row_set.h>
 
@@ -18,7 +19,7 @@ namespace carom {
 /// Rows of some constraints.
 struct RowCount {
   int rows = 0;
-  bool fits_factors = false;  ///< W may stay in factors: in the plane, of several bodies
+  bool fits_factors = false;  ///< W may stay in factors: of the plane, several bodies or very many contacts
 };
 
 /// Counts rows. \param first_row out, by constraint: its first one
@@ -34,7 +35,8 @@ struct RowCount {
     planar = planar && at.rows <= 2 && at.type != ConstraintType::rolling;
     several = several || at.bodies > 1 || at.body() != constraints.front().body();
   }
-  return {rows, planar && several};
+  // One body with a few contacts is worth an exact answer.
+  return {rows, planar && (several || constraints.size() > static_cast<std::size_t>(most_exact_contacts))};
 }
 
 /// The set that impulses along a row of a contact or limit lie in. \param first row of the constraint

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <type_traits>
 #include <utility>
 
@@ -58,19 +59,19 @@ struct Touching {
 
 Touching touching_parts(const System& system) {
   Touching all;
+  std::map<std::array<std::uint32_t, 3>, std::size_t> places;  // of kinds
   const auto add = [&](MaterialId material, const ContactFilter& filter, bool intended, Index body,
                        bool is_point, auto id) {
     constexpr bool is_shape = std::is_same_v<decltype(id), ShapeId>;
     all.any = true;
     if (intended) all.intended.push_back(system.name(id));
-    auto known = std::find_if(all.kinds.begin(), all.kinds.end(), [&](const Toucher& toucher) {
-      return toucher.material == material && toucher.filter == filter;
-    });
-    if (known == all.kinds.end()) {
+    const auto [known, is_new] =
+        places.try_emplace({material.serial, filter.groups, filter.touches}, all.kinds.size());
+    if (is_new) {
       std::string of = is_shape ? " of " + system.name(BodyId{body, system.token()}) : "";
-      known = all.kinds.insert(known, {material, filter, system.name(id), std::move(of), {}, {}});
+      all.kinds.push_back({material, filter, system.name(id), std::move(of), {}, {}});
     }
-    known->take(body, is_point);
+    all.kinds[known->second].take(body, is_point);
   };
   // PartNames are made of few parts only where there are shapes on ground: then none is listed as intended.
   const bool lists = system.obstacles().empty();
@@ -272,10 +273,9 @@ void find_pairs_without_law(const System& system, const SurfaceTable& surfaces, 
   const std::vector<Toucher>& kinds = touching.kinds;
   PartNames parts, told;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
+    for (std::size_t j = 0; j <= i && kinds[i].material.valid(); ++j) {
       const Toucher &a = kinds[i], &b = kinds[j];
-      if (!a.material.valid() || !b.material.valid()) continue;
-      if (!can_touch(a, b) || system.law(a.material, b.material)) continue;
+      if (!b.material.valid() || !can_touch(a, b) || system.law(a.material, b.material)) continue;
       parts.push_back(b.name + " and " + (i == j ? "another one of its material" : a.name));
       told.push_back(parts.back() + " (" + name_of(surfaces, b.material) +
                      (i == j ? "" : " and " + name_of(surfaces, a.material)) + ")");

@@ -11,6 +11,7 @@
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace carom {
@@ -39,10 +40,7 @@ public:
   /// True if a joint or a decision parts two bodies.
   [[nodiscard]] bool is_excluded(Index a, Index b) const {
     const Index low = a < b ? a : b, high = a < b ? b : a;
-    for (Index i = begin_[low]; i < begin_[low + 1]; ++i) {
-      if (excluded_[i] == high) return true;
-    }
-    return false;
+    return std::binary_search(excluded_.data() + begin_[low], excluded_.data() + begin_[low + 1], high);
   }
   /// Groups and touched groups of everything of a body; of a body that can touch nothing, none.
   [[nodiscard]] const ContactFilter& filter(Index body) const { return filters_[body]; }

@@ -16,6 +16,9 @@ namespace {
 using Kind = std::tuple<Index, std::uint32_t, std::uint32_t, bool>;
 using Members = std::vector<Index>;
 
+/// Pairs of kinds that are looked at, for each outline.
+constexpr std::size_t looks_per_outline = 64;
+
 Kind kind_of(const BodyOutline& outline) {
   return {outline.material, outline.filter.groups, outline.filter.touches, outline.is_point()};
 }
@@ -38,8 +41,12 @@ TouchingKinds touching_kinds(const std::vector<BodyOutline>& list, const PairFil
   std::map<Kind, Members> kinds;
   for (Index i = 0; i < list.size(); ++i) kinds[kind_of(list[i])].push_back(i);
   TouchingKinds found{.any = false, .all = !list.empty() && !filter.excludes_any()};
+  // Where each outline is of a kind of its own, their pairs are more than it costs to look for contacts.
+  std::size_t looks = looks_per_outline * list.size();
   for (auto one = kinds.begin(); one != kinds.end(); ++one) {
     for (auto other = one; other != kinds.end(); ++other) {
+      if (found.any && !found.all) return found;  // nothing more can change it
+      if (looks-- == 0) return {.any = true, .all = false};
       const Members &a = one->second, &b = other->second;
       if (may_touch(list[a.front()], list[b.front()])) {
         found.any = found.any || any_pair(list, filter, a, b);

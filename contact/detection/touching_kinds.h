@@ -13,7 +13,8 @@
 
 namespace carom {
 
-/// Which outlines of two bodies may touch each other.
+/// Which outlines of two bodies may touch each other. Of more than some hundred kinds it may be taken for
+/// granted that some may, not all.
 struct TouchingKinds {
   bool any = false;  ///< some
   bool all = false;  ///< all, and no joint or decision parts any two bodies

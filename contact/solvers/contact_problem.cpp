@@ -103,7 +103,7 @@ void ContactProblem::group_factors() {
     const std::array<int, 3>& shared = factors_.rows[first].slot;
     if (std::max(std::max(shared[0], shared[1]), shared[2]) >= slots)
       refuse(group.first, "a slot that is none");
-    if (group.size == 2 && sets_[first + 1].kind == SetKind::bounded_interval &&
+    if (group.size == 2 && sets_[first + 1].kind == SetKind::bounded_interval && !factors_.any_bound() &&
         share_two_slots(factors_.rows[first], factors_.rows[first + 1])) {  // the usual case, without loops
       const std::array<double, 2> both = diagonal_of_both(factors_, &factors_.rows[first]);
       diagonal_[first] = both[0];
@@ -118,7 +118,7 @@ void ContactProblem::group_factors() {
         refuse(static_cast<int>(row), "rows of a contact have the same slots");
       if (sets_[row].kind == SetKind::bounded_disc)
         refuse(static_cast<int>(row), "no disc in a problem in factors");
-      diagonal_[row] = diagonal_of(factors_, factors_.rows[row]);
+      diagonal_[row] = factors_.diagonal(row);
       trace += diagonal_[row];
     }
     factors_.largest_trace = larger_magnitude(factors_.largest_trace, trace);

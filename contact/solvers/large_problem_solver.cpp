@@ -11,6 +11,22 @@
 
 namespace carom {
 
+namespace {
+
+/// Residual that sweeps aim at where exact solvers would have been the choice, were there fewer contacts.
+/// What rests stays where it is, to the rounding of places.
+constexpr double exact_aim = 1e-14;
+
+/// Rows up to which W is made in full, at last: half a gigabyte.
+constexpr int most_dense_rows = 8192;
+
+/// True of a single body, and of bodies that answer together.
+bool demands_exact(const ContactProblem& problem) {
+  return problem.factors().any_bound() || problem.factors().slots() == 1;
+}
+
+}  // namespace
+
 double LargeProblemSolver::mass_ratio(const ContactProblem& problem) {
   const ResponseFactors& factors = problem.factors();
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
@@ -50,6 +66,13 @@ Outcome LargeProblemSolver::judged(double residual) const {
   return residual <= budget_.accepted ? Outcome::accepted_at_cap : Outcome::not_solved;
 }
 
+bool LargeProblemSolver::has_dense(const ContactProblem& problem, const ContactReport& report) const {
+  const std::size_t contacts = problem.groups().size();
+  if (contacts <= most_exact) return true;
+  if (!demands_exact(problem) || problem.rows() > most_dense_rows) return false;
+  return !report.usable() || (contacts <= most_polished && report.outcome != Outcome::solved);
+}
+
 /// Modes that sweeps found are right, or nearly: Newton steps solve them, on W in full.
 void LargeProblemSolver::polish(const ContactProblem& problem, std::span<double> impulse) {
   constexpr int steps = 4;
@@ -78,10 +101,11 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
   const std::size_t contacts = problem.groups().size();
   report.solver = solver_names[id];
   report.tried = 1u << id;
-  const bool is_small = contacts <= most_exact;
+  const bool is_small = contacts <= most_exact, is_exacting = demands_exact(problem);
   Residual found = judge(problem, impulse, xi);
-  if (!(found.value <= budget_.residual)) {
-    SweepBudget budget = budget_;
+  SweepBudget budget = budget_;
+  if (is_exacting) budget.residual = std::min(budget.residual, exact_aim);
+  if (!(found.value <= budget.residual)) {
     budget.sweeps = sweeps_of(problem);
     // Sweeps over few contacts cost less than anything else: all that there are.
     if (is_small) budget.accepted = std::min(budget.accepted, budget.residual);
@@ -91,8 +115,12 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
     report.reason = answer.reason;
     found = judge(problem, impulse, xi);
   }
-  const bool is_refused = judged(found.value) == Outcome::not_solved;
-  if (is_small ? !(found.value <= NewtonPolish::round_off) : is_refused && contacts <= most_polished) {
+  const Outcome swept = judged(found.value);
+  const bool is_left = swept == Outcome::not_solved || (is_exacting && swept != Outcome::solved);
+  const bool is_polished =
+      is_left && (contacts <= most_polished ||
+                  (is_exacting && swept == Outcome::not_solved && problem.rows() <= most_dense_rows));
+  if (is_small ? !(found.value <= NewtonPolish::round_off) : is_polished) {
     polish(problem, impulse);
     found = judge(problem, impulse, xi);
   }

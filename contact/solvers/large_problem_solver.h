@@ -25,7 +25,9 @@ class LargeProblemSolver {
 public:
   /// Contacts up to which exact solvers are asked where sweeps do not end.
   static constexpr std::size_t most_exact = most_exact_contacts;
-  /// Contacts up to which an answer that must not be used is polished all the same: some 0.1 s.
+  /// Contacts up to which an answer that must not be used is polished all the same: some 0.1 s. Of a single
+  /// body, and where bodies answer together, an answer at the cap is too, and exact solvers are asked after
+  /// that; and at any number of contacts where the answer must not be used.
   static constexpr std::size_t most_polished = 200;
 
   /// Ratio of masses from which on heavy bodies on light ones need more sweeps than the budget has.
@@ -46,9 +48,8 @@ public:
   /// Outcome of an answer of some residual.
   [[nodiscard]] Outcome judged(double residual) const;
   /// True if the exact solvers may be asked for a problem whose sweeps did not end.
-  [[nodiscard]] bool has_dense(const ContactProblem& problem) const {
-    return problem.groups().size() <= most_exact;
-  }
+  /// \param report of the answer of solve()
+  [[nodiscard]] bool has_dense(const ContactProblem& problem, const ContactReport& report) const;
   /// The last problem that was polished, with W in full.
   [[nodiscard]] const ContactProblem& dense() const { return dense_; }
   /// Has every sweep looked at from now on.

@@ -40,6 +40,10 @@ bool solve_planar(const OddGroup& odd, double xi_n, double xi_t, Impulses& p) {
       solve_planar_contact({odd.w_nn, odd.w_nt, odd.w_tt, xi_n - odd.w_nn * p.n - odd.w_nt * p.t,
                             xi_t - odd.w_nt * p.n - odd.w_tt * p.t, odd.set[1].coefficient});
   if (found.count == 0) return false;
+  if (found.count == 1) {
+    p = {found.list[0].normal, found.list[0].tangential};
+    return true;
+  }
   double least = std::numeric_limits<double>::infinity();
   Impulses nearest;
   for (std::size_t i = 0; i < static_cast<std::size_t>(found.count); ++i) {
@@ -74,10 +78,31 @@ void solve_leading(const OddGroup& odd, double xi_n, Impulses& p) {
   p.n = clamped(p.n, odd.w_nn, xi_n, lower, upper);
 }
 
+/// Slots that answer together.
+void push_bound(const OddGroup& odd, const std::array<double, 2>& impulse, SlotVelocity* velocity) {
+  const ResponseFactors& factors = *odd.factors;
+  for (std::size_t row = 0; row < static_cast<std::size_t>(odd.rows); ++row) {
+    for (const ResponseFactors::Answer& answer : factors.answers(odd.first + row)) {
+      const double* number = &factors.bound.numbers[answer.number];
+      SlotVelocity* const u = velocity + answer.first_slot;
+      for (std::size_t slot = 0; slot < answer.slots; ++slot, number += columns) {
+        u[slot].v += Lanes{number[0], number[1], number[2], 0.0} * impulse[row];
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void push(const OddGroup& odd, const std::array<double, 2>& impulse, SlotVelocity* velocity) {
+  const auto is_bound = [&](std::size_t i) {
+    const std::vector<char>& bound = odd.factors->bound.slots;
+    const auto slot = static_cast<std::size_t>(odd.slot[i]);
+    return slot < bound.size() && bound[slot] != 0;
+  };
+  if (odd.factors != nullptr) push_bound(odd, impulse, velocity);
   for (std::size_t i = 0; i < odd.slot.size(); ++i) {
+    if (odd.factors != nullptr && is_bound(i)) continue;
     SlotVelocity& u = velocity[odd.slot[i]];
     for (std::size_t k = 0; k < columns; ++k) {
       u.v[k] += odd.h[0][columns * i + k] * impulse[0] + odd.h[1][columns * i + k] * impulse[1];

@@ -108,6 +108,10 @@ std::string laid_out(const Json& fields) {
 }  // namespace
 
 void save_problem(const std::string& path, const ContactProblem& problem, const ProblemNotes& notes) {
+  // Files know bodies that answer for themselves.
+  if (problem.is_factored() && problem.factors().any_bound()) {
+    return save_problem(path, problem.dense(), notes);
+  }
   const auto n = static_cast<std::size_t>(problem.rows());
   Json file;
   file["format"] = problem_format::name;

@@ -21,16 +21,38 @@ inline double add_times(const double* h, const double* u, double sum) {
   return sum + h[0] * u[0] + h[1] * u[1] + h[2] * u[2];
 }
 
+/// Product of a row and the answer of bound slots to another one.
+double times_answers(const ResponseFactors& factors, const ResponseFactors::Row& row, std::size_t column) {
+  constexpr std::size_t columns = ResponseFactors::columns;
+  double sum = 0.0;
+  for (const ResponseFactors::Answer& answer : factors.answers(column)) {
+    for (std::size_t i = 0; i < ResponseFactors::most_slots && row.slot[i] >= 0; ++i) {
+      const std::size_t place = static_cast<std::size_t>(row.slot[i]) - answer.first_slot;
+      if (place >= answer.slots) continue;  // before the first one, too
+      sum = add_times(&row.h[columns * i], &factors.bound.numbers[answer.number + columns * place], sum);
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
+void ResponseFactors::Bound::clear() {
+  slots.clear();
+  first.clear();
+  answers.clear();
+  numbers.clear();
+}
+
 void ResponseFactors::reset(int row_count, int slot_count) {
+  bound.clear();
   inverse_mass.assign(static_cast<std::size_t>(slot_count) * columns, 0.0);
   rows.assign(static_cast<std::size_t>(row_count), Row{});
 }
 
 double ResponseFactors::entry(std::size_t row, std::size_t column) const {
   const Row &left = rows[row], &right = rows[column];
-  double sum = 0.0;
+  double sum = times_answers(*this, left, column);
   for (std::size_t i = 0; i < most_slots && left.slot[i] != no_slot; ++i) {
     const double* const mass = inverse_mass.data() + static_cast<std::size_t>(left.slot[i]) * columns;
     for (std::size_t j = 0; j < most_slots && right.slot[j] != no_slot; ++j) {
@@ -43,7 +65,10 @@ double ResponseFactors::entry(std::size_t row, std::size_t column) const {
   return sum;
 }
 
-double ResponseFactors::diagonal(std::size_t row) const { return diagonal_of(*this, rows[row]); }
+double ResponseFactors::diagonal(std::size_t row) const {
+  const double own = diagonal_of(*this, rows[row]);
+  return any_bound() ? own + times_answers(*this, rows[row], row) : own;
+}
 
 void ResponseFactors::respond(std::span<const double> impulse, std::vector<double>& velocity) const {
   velocity.assign(inverse_mass.size(), 0.0);
@@ -63,6 +88,14 @@ void ResponseFactors::respond(std::span<const double> impulse, std::vector<doubl
     p += paired ? 2 : 1;
   }
   for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] *= inverse_mass[k];
+  if (!any_bound()) return;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (const Answer& answer : answers(row)) {
+      const double* number = &bound.numbers[answer.number];
+      double* const to = u + columns * answer.first_slot;
+      for (std::size_t k = 0; k < columns * answer.slots; ++k) to[k] += number[k] * impulse[row];
+    }
+  }
 }
 
 double ResponseFactors::along(std::size_t row, std::span<const double> velocity) const {
@@ -76,6 +109,7 @@ double ResponseFactors::along(std::size_t row, std::span<const double> velocity)
 }
 
 void ResponseFactors::resize_rows(int row_count) {
+  bound.clear();
   inverse_mass.clear();
   rows.resize(static_cast<std::size_t>(row_count));
 }

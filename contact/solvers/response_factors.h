@@ -3,6 +3,8 @@
 /// \file
 /// The matrix of a large contact problem by its factors, W = H M^-1 H^T: plain arrays, in which a body is a
 /// place (slot) with three inverse masses. W itself would have as many numbers as the square of the contacts.
+/// Bodies that answer together, since joints or a linearised step bind them, are slots without masses: what
+/// an impulse along a row makes of their velocities stands beside H, W = H (M^-1 H^T + C).
 
 #include <carom/core/export.h>
 
@@ -25,21 +27,47 @@ struct CAROM_API ResponseFactors {
     std::array<double, std::size_t{most_slots * columns}> h{};
   };
 
-  std::vector<double> inverse_mass;  ///< three numbers a slot [1/kg, 1/kg, 1/(kg m^2)]; 0: immovable
+  /// Velocities of consecutive slots, bound to each other, by a unit impulse along a row.
+  struct Answer {
+    std::size_t first_slot = 0, slots = 0;
+    std::size_t number = 0;  ///< of Bound::numbers, three a slot
+  };
+
+  /// Slots that answer together. Empty where each slot answers for itself.
+  struct Bound {
+    std::vector<char> slots;         ///< by slot: true of these
+    std::vector<std::size_t> first;  ///< by row, and an end: its first answer
+    std::vector<Answer> answers;
+    std::vector<double> numbers;
+    /// No slots.
+    void clear();
+  };
+
+  std::vector<double> inverse_mass;  ///< three numbers a slot [1/kg, 1/kg, 1/(kg m^2)]; 0: immovable, bound
   std::vector<Row> rows;
+  Bound bound;
   double largest_trace = 0.0;  ///< of W over the rows of a group (planar_certificate.h); of a grouped problem
 
   /// Sizes the arrays, all numbers zero.
   void reset(int row_count, int slot_count);
   /// Sizes the rows, whose numbers are to be written; no slots.
   void resize_rows(int row_count);
+  /// True if some slots answer together.
+  [[nodiscard]] bool any_bound() const { return !bound.slots.empty(); }
+  /// True of a slot that answers with others.
+  [[nodiscard]] bool is_bound(std::size_t slot) const { return any_bound() && bound.slots[slot] != 0; }
+  /// Answers of bound slots to an impulse along a row.
+  [[nodiscard]] std::span<const Answer> answers(std::size_t row) const {
+    if (!any_bound()) return {};
+    return {bound.answers.data() + bound.first[row], bound.first[row + 1] - bound.first[row]};
+  }
   /// Number of slots.
   [[nodiscard]] std::size_t slots() const { return inverse_mass.size() / columns; }
   /// Entry of W.
   [[nodiscard]] double entry(std::size_t row, std::size_t column) const;
   /// Entry of W on its diagonal.
   [[nodiscard]] double diagonal(std::size_t row) const;
-  /// u = M^-1 H^T P. \param velocity out, three numbers a slot
+  /// u = (M^-1 H^T + C) P. \param velocity out, three numbers a slot
   void respond(std::span<const double> impulse, std::vector<double>& velocity) const;
   /// H u along one row.
   [[nodiscard]] double along(std::size_t row, std::span<const double> velocity) const;

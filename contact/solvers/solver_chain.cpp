@@ -93,7 +93,7 @@ bool SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::
                                             ContactReport& report) {
   sweep(problem, impulse, report);
   ExactAttempt attempt{impulse, xi, report, SolverId::nonlinear_cg, SolverId::nonlinear_cg, false, 1};
-  const bool is_left = !(report.residual <= accepted_residual) && large.has_dense(problem);
+  const bool is_left = !(report.residual <= accepted_residual) && large.has_dense(problem, report);
   if (is_left) {
     exact.solve(large.dense(), modes, attempt);
     take_at_cap(attempt, report);

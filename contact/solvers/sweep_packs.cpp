@@ -16,6 +16,8 @@ namespace carom {
 // One group of a problem as it is read.
 struct SweepPacks::Group {
   int number = 0, rows = 0, slots = 0;
+  std::size_t first = 0;                     // row
+  const ResponseFactors* factors = nullptr;  // null: no bound slots
   std::array<int, std::size_t{ResponseFactors::most_slots}> slot{};
   std::array<std::array<double, 9>, 2> h{};  // scaled
   double w_nn = 0.0, w_nt = 0.0, w_tt = 0.0, rho = 0.0;
@@ -33,6 +35,7 @@ bool SweepPacks::scale_masses(const ResponseFactors& factors) {
     const double* const mass = factors.inverse_mass.data() + columns * slot;
     const bool moved = moves(slot);
     scale_[slot].v = Lanes{std::sqrt(mass[0]), std::sqrt(mass[1]), std::sqrt(mass[2]), 0.0};
+    if (factors.is_bound(slot)) scale_[slot].v = Lanes{1.0, 1.0, 1.0, 0.0};
     same = same && moves(slot) == moved;
   }
   scale_[count] = {};
@@ -44,6 +47,15 @@ void SweepPacks::find_least_trace(const ContactProblem& problem) {
   const double largest = largest_trace(problem);
   least_trace_ = largest * negligible_trace;
   immovable_rho_ = largest > 0.0 ? 1.0 / largest : 1.0;
+}
+
+/// Block of W of a group with bound slots.
+void SweepPacks::read_bound(const ResponseFactors& factors, Group& group) {
+  group.factors = &factors;
+  group.w_nn = factors.diagonal(group.first);
+  if (group.rows < 2) return;
+  group.w_nt = factors.entry(group.first + 1, group.first);
+  group.w_tt = factors.diagonal(group.first + 1);
 }
 
 /// Raises the scale of the loads by its own.
@@ -75,6 +87,8 @@ SweepPacks::Group SweepPacks::read(const ContactProblem& problem, std::size_t g,
       group.w_tt += t * t;
     }
   }
+  group.first = first;
+  if (!problem.factors().answers(first).empty()) read_bound(problem.factors(), group);
   const double trace = group.w_nn + group.w_tt;
   group.rho = trace > least_trace_ ? 1.0 / trace : immovable_rho_;
   for (std::size_t row = 0; row < static_cast<std::size_t>(at.size); ++row) {
@@ -87,7 +101,9 @@ SweepPacks::Group SweepPacks::read(const ContactProblem& problem, std::size_t g,
 
 /// Whether a unique solution follows from the formulas of a pack, whatever the others do.
 bool SweepPacks::is_regular(const Group& group) {
-  if (group.slots > 2 || group.set[0].kind != SetKind::half_line || !(group.w_nn > 0.0)) return false;
+  if (group.slots > 2 || group.factors != nullptr || group.set[0].kind != SetKind::half_line ||
+      !(group.w_nn > 0.0))
+    return false;
   if (group.rows == 1) return true;
   if (group.set[1].kind != SetKind::bounded_interval) return false;
   const double friction = group.set[1].coefficient;
@@ -170,6 +186,8 @@ void SweepPacks::add_odd(const Group& group) {
   OddGroup& odd = odd_.emplace_back();
   odd.group = group.number;
   odd.rows = group.rows;
+  odd.first = group.first;
+  odd.factors = group.factors;
   odd.slot = group.slot;
   odd.h = group.h;
   odd.w_nn = group.w_nn;

@@ -41,9 +41,11 @@ struct alignas(32) ContactPack {
 };
 
 /// A group that is solved by itself: of three slots, an interval, in a known direction of slip, immovable,
-/// with several solutions or none.
+/// with several solutions or none, or with slots that answer together.
 struct OddGroup {
   int group = 0, rows = 0;
+  std::size_t first = 0;                     // its first row, in
+  const ResponseFactors* factors = nullptr;  // whose bound slots it reaches; null: none
   std::array<int, std::size_t{ResponseFactors::most_slots}> slot{};
   std::array<std::array<double, 9>, 2> h{};  // scaled
   double w_nn = 0.0, w_nt = 0.0, w_tt = 0.0, rho = 0.0;
@@ -91,6 +93,7 @@ private:
   void find_places(const ContactProblem& problem, std::span<const double> impulse);
   void find_least_trace(const ContactProblem& problem);
   [[nodiscard]] Group read(const ContactProblem& problem, std::size_t g, std::span<const double> impulse);
+  static void read_bound(const ResponseFactors& factors, Group& group);
   [[nodiscard]] static bool is_regular(const Group& group);
   [[nodiscard]] bool moves(std::size_t slot) const {
     return scale_[slot].v[0] > 0.0 || scale_[slot].v[2] > 0.0;
@@ -111,7 +114,7 @@ private:
   std::array<Open, std::size_t{most_open}> open_{};
   std::vector<Place> places_;  // by group
   std::vector<OddGroup> odd_;
-  std::vector<SlotVelocity> scale_;   // roots of inverse masses
+  std::vector<SlotVelocity> scale_;   // roots of inverse masses; 1 of slots that answer together
   std::vector<std::uint32_t> taken_;  // by slot: open packs that have it
   double load_scale_ = 0.0, least_trace_ = 0.0, immovable_rho_ = 1.0;
 };

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace carom {
 
@@ -37,7 +40,8 @@ std::vector<JointId> partners(const JointConstraints& joints, std::size_t row,
   for (std::size_t i = 0; i < vector.size(); ++i) {
     const JointId joint = joints.joint(i);
     if (joint == joints.joint(row) || std::abs(vector[i]) <= takes_part * std::abs(vector[row])) continue;
-    if (std::find(found.begin(), found.end(), joint) == found.end()) found.push_back(joint);
+    // Rows of a joint follow one another.
+    if (found.empty() || found.back() != joint) found.push_back(joint);
   }
   return found;
 }
@@ -75,29 +79,67 @@ std::vector<JointId> partners(JointConstraints& joints, std::size_t row) {
   throw ModelError(message + "; allowed: a constant bound, or joints none of which follows from others");
 }
 
-/// Demands that forces of joints which bound friction are unique.
-void demand_unique_pressure(const Assembly& assembly, Index component, JointConstraints& joints) {
-  std::vector<std::vector<JointId>> redundant;  // joints that a dependent row follows from, and its own
-  for (std::size_t row = 0; row < joints.size(); ++row) {
-    if (joints.factors().pivot(row) >= dependent_pivot) continue;
-    redundant.push_back(partners(joints, row));
-    redundant.back().push_back(joints.joint(row));
-  }
-  if (redundant.empty()) return;
+/// Calls f(friction, coefficient, bearing) for dry friction that forces of a joint bound.
+template <class F>
+void for_pressed_friction(const Assembly& assembly, Index component, F&& f) {
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly.joint_kinds()[k];
     if (!kind.has_dry_friction()) continue;
     const Range range = assembly.joints(component, k);
     for (Index slot = range.begin; slot < range.end; ++slot) {
       const double coefficient = kind.dry_friction(slot).coefficient;
-      if (coefficient == 0.0) continue;
-      const JointId bearing = kind.on_joint(slot);
-      for (const std::vector<JointId>& all : redundant) {
-        if (std::find(all.begin(), all.end(), bearing) == all.end()) continue;
-        fail_unique_pressure(assembly.system(), assembly.joint_id(k, slot), coefficient, bearing, all);
-      }
+      if (coefficient != 0.0) f(assembly.joint_id(k, slot), coefficient, kind.on_joint(slot));
     }
   }
+}
+
+/// Rows that follow from others.
+std::vector<std::size_t> redundant_rows(const JointConstraints& joints) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < joints.size(); ++row) {
+    if (joints.factors().pivot(row) < dependent_pivot) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Joints, by serial, with a row that takes part in a mixture of all dependences, in which shares without a
+/// pattern leave none out: one solution instead of one for each redundant row.
+std::set<Index> redundant_joints(JointConstraints& joints, std::span<const std::size_t> redundant) {
+  constexpr double takes_part = 1e-8, golden = 0.6180339887498949;
+  std::vector<double> shares(joints.size(), 0.0), vector;
+  for (std::size_t k = 0; k < redundant.size(); ++k) {
+    const double multiple = golden * static_cast<double>(k + 1);
+    shares[redundant[k]] = 1.0 + multiple - std::floor(multiple);
+  }
+  joints.factors().dependence(shares, vector);
+  std::set<Index> found;
+  for (std::size_t row = 0; row < vector.size(); ++row) {
+    if (std::abs(vector[row]) > takes_part) found.insert(joints.joint(row).serial);
+  }
+  return found;
+}
+
+/// Demands that forces of joints which bound friction are unique.
+void demand_unique_pressure(const Assembly& assembly, Index component, JointConstraints& joints) {
+  std::set<Index> bearings;
+  for_pressed_friction(assembly, component,
+                       [&](JointId, double, JointId bearing) { bearings.insert(bearing.serial); });
+  if (bearings.empty()) return;
+  const std::vector<std::size_t> redundant = redundant_rows(joints);
+  if (redundant.empty()) return;
+  std::erase_if(bearings, [all = redundant_joints(joints, redundant)](Index bearing) {
+    return !all.contains(bearing);
+  });
+  if (bearings.empty()) return;
+  for_pressed_friction(assembly, component, [&](JointId friction, double coefficient, JointId bearing) {
+    if (!bearings.contains(bearing.serial)) return;
+    for (const std::size_t row : redundant) {
+      std::vector<JointId> all = partners(joints, row);
+      all.push_back(joints.joint(row));
+      if (std::find(all.begin(), all.end(), bearing) == all.end()) continue;
+      fail_unique_pressure(assembly.system(), friction, coefficient, bearing, all);
+    }
+  });
 }
 
 /// The row that is furthest off.

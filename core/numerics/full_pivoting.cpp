@@ -94,7 +94,28 @@ bool FullPivoting::solve(double dependent, std::vector<double>& right) {
       row_sizes_[row_order_[i]] = largest_from(row, step + 1);
     }
   }
-  work_.assign(n, 0.0);
+  return substitute(right);
+}
+
+/// Eliminates a right side as it would have been with the matrix: each row keeps, left of its pivot, what it
+/// had there when that was eliminated.
+bool FullPivoting::solve_again(std::vector<double>& right) {
+  const std::size_t n = size();
+  if (n == 1) return solve_one(right[0]);
+  for (std::size_t step = 0; step < rank_; ++step) {
+    const double pivot = entry(step, step), of_pivot = right[row_order_[step]];
+    for (std::size_t i = step + 1; i < n; ++i) {
+      const double number = entry(i, step);
+      if (number == 0.0) continue;
+      right[row_order_[i]] -= number / pivot * of_pivot;
+    }
+  }
+  return substitute(right);
+}
+
+/// The unknowns from the triangle.
+bool FullPivoting::substitute(std::vector<double>& right) {
+  work_.assign(size(), 0.0);
   for (std::size_t i = rank_; i-- > 0;) {
     double sum = right[row_order_[i]];
     for (std::size_t j = i + 1; j < rank_; ++j) sum -= entry(i, j) * work_[column_order_[j]];

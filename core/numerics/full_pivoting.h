@@ -21,6 +21,9 @@ public:
   /// Eliminates, and replaces the right side by a solution: unknowns beyond the rank are zero. False if a
   /// number is not finite. \param dependent pivots below this part of the largest are rounding
   [[nodiscard]] bool solve(double dependent, std::vector<double>& right);
+  /// Likewise for another right side, with the same bits; the matrix of the last solve(), which succeeded,
+  /// was not touched.
+  [[nodiscard]] bool solve_again(std::vector<double>& right);
 
   /// Number of unknowns.
   [[nodiscard]] std::size_t size() const { return row_order_.size(); }
@@ -46,6 +49,7 @@ private:
   [[nodiscard]] double largest_from(const double* row, std::size_t column) const;
   [[nodiscard]] Pivot choose_pivot(std::size_t step) const;
   void swap_columns(std::size_t a, std::size_t b);
+  [[nodiscard]] bool substitute(std::vector<double>& right);
 
   std::vector<double> matrix_, work_;
   std::vector<double> row_sizes_;  // largest number that is left, by row

@@ -314,32 +314,37 @@ void SparseFactors::solve(double* x) {
   if (!weak_.empty()) weak_.add_to(x);
 }
 
-/// A row of the matrix, as it was given.
-void SparseFactors::read_row(std::size_t row, double* out) const {
+/// A x of the matrix as it was given.
+void SparseFactors::multiply(const double* x, double* out) const {
   const Pattern& at = *pattern_;
-  const auto given = [&](Index block) { return at.given_row[block]; };
   std::fill_n(out, size(), 0.0);
   const double* value = values_.data();
   for (Index i = 0; i < at.blocks(); ++i) {
     for (Index p = at.entry_begin[i]; p < at.entry_begin[i + 1]; ++p) {
-      const Index j = at.entry_column[p];
+      const Index j = at.entry_column[p], row = at.given_row[i], column = at.given_row[j];
       for (Index r = 0; r < at.rows(i); ++r) {
         for (Index c = 0; c < at.rows(j); ++c, ++value) {
           if (i == j && c > r) continue;
-          if (given(i) + r == row) out[given(j) + c] = *value;
-          if (given(j) + c == row) out[given(i) + r] = *value;
+          out[row + r] += *value * x[column + c];
+          if (row + r != column + c) out[column + c] += *value * x[row + r];
         }
       }
     }
   }
 }
 
-void SparseFactors::dependence(std::size_t row, std::vector<double>& out) {
+/// A row of the matrix, as it was given.
+void SparseFactors::read_row(std::size_t row, double* out) {
+  work_[row] = 1.0;
+  multiply(work_.data(), out);
+  work_[row] = 0.0;
+}
+
+void SparseFactors::dependence(std::span<const double> shares, std::vector<double>& out) {
   out.resize(size());
-  read_row(row, out.data());
+  multiply(shares.data(), out.data());
   solve(out.data());
-  for (double& number : out) number = -number;
-  out[row] = 1.0;
+  for (std::size_t row = 0; row < shares.size(); ++row) out[row] = shares[row] - out[row];
 }
 
 }  // namespace carom

@@ -53,8 +53,15 @@ public:
   void factor();
   /// x becomes a solution of A x = x.
   void solve(double* x);
-  /// The combination of rows that vanishes, for one that was left out: 1 there.
-  void dependence(std::size_t row, std::vector<double>& out);
+  /// The combination of rows that vanishes, for given shares of those that were left out.
+  /// \param shares by row, zero at rows that were not left out
+  void dependence(std::span<const double> shares, std::vector<double>& out);
+  /// Likewise of one of them: 1 there.
+  void dependence(std::size_t row, std::vector<double>& out) {
+    row_.assign(size(), 0.0);
+    row_[row] = 1.0;
+    dependence(row_, out);
+  }
   /// Pivot of a row of the matrix against its diagonal, of the last factorisation; small where the row
   /// follows from others.
   [[nodiscard]] double pivot(std::size_t row) const { return relative_pivot_[row]; }
@@ -90,7 +97,8 @@ private:
   void factor_down_to(double least_pivot);
   [[nodiscard]] bool is_doubtful() const;
   void factor_weak_rows();
-  void read_row(std::size_t row, double* out) const;
+  void multiply(const double* x, double* out) const;
+  void read_row(std::size_t row, double* out);
   void solve_strong(double* x);
   template <Index Rows>
   void substitute(double* given);

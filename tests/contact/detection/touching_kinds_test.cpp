@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdint>
+
 namespace {
 
 using namespace carom;
@@ -73,6 +76,29 @@ TEST(TouchingKinds, JointsPartTwoBodiesAndNotTheThird) {
   expect_kinds(system, false, false);
   add_disc(system, {});
   expect_kinds(system, true, false);
+}
+
+TEST(TouchingKinds, OfVeryManyFiltersNotAllPairsAreLookedAt) {
+  System system = with_law();
+  // Groups of one side and of the other: none touches its own side. As many kinds as discs.
+  constexpr std::uint32_t count = 1000;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t side = i % 2 == 0 ? 1 : 2, number = i << 2;
+    add_disc(system, {.groups = side | number, .touches = 3 - side});
+  }
+  const carom_test::PlacedModel model(system);
+  const BodyOutlines outlines(model.assembly);
+  for (const bool touch : {true, false}) {
+    std::size_t looks = 0;
+    const auto may_touch = [&](const BodyOutline& a, const BodyOutline& b) {
+      ++looks;
+      return touch && carom::may_touch(a.filter, b.filter);
+    };
+    const TouchingKinds found = touching_kinds(outlines.list(), PairFilter(model.assembly), may_touch);
+    EXPECT_TRUE(found.any);  // where nothing is known, too
+    EXPECT_FALSE(found.all);
+    EXPECT_LE(looks, 100 * count);
+  }
 }
 
 TEST(TouchingKinds, PointsDoNotTouchPoints) {

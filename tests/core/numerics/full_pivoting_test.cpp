@@ -85,6 +85,28 @@ TEST(FullPivoting, SolvesWhatHasASolution) {
   }
 }
 
+TEST(FullPivoting, SolvesAnotherRightSideWithTheSameBits) {
+  std::mt19937 engine(5);
+  FullPivoting factors, once;
+  for (const std::size_t n : {1U, 2U, 5U, 17U, 40U}) {
+    for (std::size_t rank = (n + 1) / 2; rank <= n; ++rank) {
+      const std::vector<double> matrix = random_matrix(engine, n, rank);
+      std::vector<double> first = times(matrix, random_numbers(engine, n));
+      factors.reset(n);
+      std::copy(matrix.begin(), matrix.end(), factors.matrix());
+      ASSERT_TRUE(factors.solve(dependent_pivot, first));
+      for (int repeat = 0; repeat < 2; ++repeat) {
+        std::vector<double> again = times(matrix, random_numbers(engine, n)), whole = again;
+        once.reset(n);
+        std::copy(matrix.begin(), matrix.end(), once.matrix());
+        ASSERT_TRUE(once.solve(dependent_pivot, whole));
+        ASSERT_TRUE(factors.solve_again(again));
+        EXPECT_EQ(again, whole) << n << " rows of rank " << rank;
+      }
+    }
+  }
+}
+
 TEST(FullPivoting, SaysThatANumberIsNone) {
   std::mt19937 engine(4);
   FullPivoting factors;

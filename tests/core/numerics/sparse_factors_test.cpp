@@ -271,6 +271,17 @@ TEST(SparseFactors, RowsThatDependOnEachOtherAreSolvedWhereThereIsASolution) {
       EXPECT_LE((combination.transpose() * rows).cwiseAbs().maxCoeff(),
                 1e-12 * (1.0 + combination.cwiseAbs().maxCoeff()) * rows.cwiseAbs().maxCoeff());
     }
+    // All of them at once: the sum of their combinations, by shares.
+    std::vector<double> shares(static_cast<std::size_t>(size), 0.0), sum(shares), mixed;
+    for (std::size_t row = 0; row < shares.size(); ++row) {
+      if (factors.pivot(row) > dependent_pivot) continue;
+      shares[row] = random.uniform(1.0, 2.0);
+      factors.dependence(row, vanishes);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += shares[row] * vanishes[i];
+    }
+    factors.dependence(shares, mixed);
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      EXPECT_NEAR(mixed[i], sum[i], 1e-8 * (1.0 + std::abs(sum[i])));
     // A later row may have been built on one that was replaced.
     EXPECT_EQ(left_out, static_cast<std::size_t>(size - rows.colPivHouseholderQr().rank()));
     const Eigen::VectorXd right = rows * random_vector(rows.cols(), random);

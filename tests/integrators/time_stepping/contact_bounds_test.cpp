@@ -24,8 +24,9 @@ using carom_test::Random;
 
 constexpr double g = 9.81;
 
-/// A bar that stands on the ground with many feet.
-System bar_with_feet(int feet) {
+/// A bar that stands on the ground with many feet. \param arms rods that hang at it, with friction in their
+/// pins
+System bar_with_feet(int feet, int arms = 0) {
   System system;
   system.add(Gravity{{0.0, -g}});
   system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.0});
@@ -33,17 +34,30 @@ System bar_with_feet(int feet) {
   for (int i = 0; i < feet; ++i) {
     system.add(Disc{.body = body, .radius = 0.01, .centre = {-1.0 + 2.0 * i / feet, 0.0}});
   }
+  for (int i = 0; i < arms; ++i) {
+    const BodyId arm = system.add(RigidBody{.mass = rod(0.1, 0.2), .position = {0.0, -0.09}});
+    const JointId pin = system.add(Revolute{.from = body, .to = {arm, {0.0, 0.1}}});
+    system.add(JointFriction{.joint = pin, .bound = 0.1});
+  }
   return system;
 }
 
 TEST(ContactBounds, MoreContactsThanMemoryAllowsAreRefusedByNumber) {
   // Two rows each; 8192 are allowed.
   const System system = bar_with_feet(4097);
-  Simulation stepping(system, TimeStepping{.step = 1e-3});
+  Simulation stepping(bar_with_feet(4097, 12), TimeStepping{.step = 1e-3});
   EXPECT_THROWS(SolverError, stepping.step(), "time stepping at t = 0 s, step 0.001 s",
-                "more contacts than memory allows", "4097 constraints", "8194 rows", "at most 8192");
+                "more contacts than memory allows", "4109 constraints", "8206 rows", "at most 8192");
   EXPECT_EQ(stepping.time(), 0.0);
   EXPECT_EQ(stepping.statistics().steps, 0);
+  // Sweeps need no room for W: those of one body, and of few pins with friction.
+  for (const int arms : {0, 2}) {
+    Simulation swept(bar_with_feet(4097, arms), TimeStepping{.step = 1e-3});
+    swept.step();
+    double impulse = 0.0;
+    for (const ContactRecord& contact : swept.report().contacts) impulse += contact.impulse[0];
+    EXPECT_NEAR(impulse, (1.0 + 0.1 * arms) * g * 1e-3, 1e-9);
+  }
   Simulation events(system, EventDriven{});
   EXPECT_THROWS(SolverError, events.run_until(0.1), "event-driven at t = 0 s",
                 "more contacts than memory allows", "4097 constraints");
