@@ -53,7 +53,8 @@ void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> m
   // All solutions of one contact are known, but not where it has rolling resistance.
   const bool knows_all = alone && (problem.rows() <= 2 || problem.sets()[1].kind == SetKind::bounded_disc);
   const bool done = (!knows_all && leave_open(problem, state)) || attempt(problem, first, state) ||
-                    attempt(problem, SolverId::lemke, state) || attempt(problem, SolverId::projection, state);
+                    attempt(problem, SolverId::lemke, state) ||
+                    attempt(problem, SolverId::projection, state) || approach(problem, state);
   if (!done && !(state.report.residual <= tolerated_residual)) {
     attempt(problem, SolverId::enumeration, state);
   }
@@ -117,6 +118,53 @@ bool ExactSolvers::attempt(const ContactProblem& problem, SolverId id, ExactAtte
   }
   keep(found, id, answer.outcome, degenerate, state);
   return report.residual <= accepted_residual;
+}
+
+// From an answer that is nearly one, by problems W + s D, b - s D P with D the traces of the groups: each is
+// regular, so that pivoting does not lose its digits in rows that almost follow from each other (bodies that
+// lie along each other), and an answer near P is one of the problem but for s times how far it is from P
+// (the proximal point method: R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877). Impulses without end
+// are no answer: s stays so large that the residual tells.
+bool ExactSolvers::approach(const ContactProblem& problem, ExactAttempt& state) {
+  constexpr double near = 1e-3, softest = 1e-5, hardest = 1e-8, harder = 0.5;
+  constexpr int most_problems = 30;
+  if (!(state.report.residual <= near) || state.report.residual <= tolerated_residual) return false;
+  const auto follows = [](const RowSet& set) {  // there may be no answer
+    return set.kind == SetKind::proportional && set.coefficient != 0.0;
+  };
+  if (std::ranges::any_of(problem.sets(), follows)) return false;
+  anchor_.assign(state.impulse.begin(), state.impulse.end());
+  double softness = softest;
+  for (int i = 0; i < most_problems; ++i, softness = std::max(harder * softness, hardest)) {
+    if (!solve_near(problem, softness)) continue;
+    anchor_ = trial_;
+    problem.velocities(trial_, trial_xi_);
+    Residual found = residual(problem, trial_, trial_xi_);
+    if (found.value > accepted_residual && found.value <= tolerated_residual) {
+      found = polish_.improve(problem, trial_, polish_steps);
+      problem.velocities(trial_, trial_xi_);
+    }
+    keep(found, SolverId::lemke, Outcome::solved, at_mode_boundary(problem, trial_, trial_xi_), state);
+    if (state.report.residual <= accepted_residual) return true;
+  }
+  return false;
+}
+
+// Writes the answer of the problem near the anchor as the trial. False where it has none to rounding.
+bool ExactSolvers::solve_near(const ContactProblem& problem, double softness) {
+  near_ = problem;
+  for (const RowGroup& group : problem.groups()) {
+    const double added = softness * group_trace(problem, group);
+    for (int i = group.first; i < group.first + group.size; ++i) {
+      near_.w(i, i) += added;
+      near_.vector()[static_cast<std::size_t>(i)] -= added * anchor_[static_cast<std::size_t>(i)];
+    }
+  }
+  for (const SolverId id : {SolverId::principal_pivoting, SolverId::lemke}) {
+    if (solver(id)->solve(near_, trial_).outcome == Outcome::no_solution) continue;
+    if (polish_.improve(near_, trial_, rescue_steps).value <= tolerated_residual) return true;
+  }
+  return false;
 }
 
 // Takes no impulses if these are an answer: of several solutions the one that does nothing. It is told as

@@ -31,8 +31,9 @@ struct ExactAttempt {
   int applicable = 0;                        ///< solvers that could be tried
 };
 
-/// One contact exactly by its modes, several by principal pivoting, then Lemke, then projection; up to three
-/// by enumeration of the modes when all else failed. Contacts that all separate, and one with rolling
+/// One contact exactly by its modes, several by principal pivoting, then Lemke, then projection; where that
+/// ends near an answer by problems nearby that are regular; up to three by enumeration of the modes when all
+/// else failed. Contacts that all separate, and one with rolling
 /// resistance, get no impulses: where friction is strong the solvers might find another solution. Reuse it:
 /// its memory is kept.
 class ExactSolvers {
@@ -49,6 +50,8 @@ public:
 private:
   [[nodiscard]] ContactSolver* solver(SolverId id);
   bool enumerate(const ContactProblem& problem, ExactAttempt& state);
+  bool approach(const ContactProblem& problem, ExactAttempt& state);
+  bool solve_near(const ContactProblem& problem, double softness);
   bool leave_open(const ContactProblem& problem, ExactAttempt& state);
   void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, ExactAttempt& state);
 
@@ -59,6 +62,8 @@ private:
   SolutionList list_;
   NewtonPolish polish_;
   std::vector<double> trial_, trial_xi_;
+  ContactProblem near_;         // the problem, made regular
+  std::vector<double> anchor_;  // impulses at which it is the problem itself
 };
 
 }  // namespace carom
