@@ -66,9 +66,9 @@ EventRecord event_of(const Assembly& assembly, const IslandProblem& island, std:
   for (int row = 0; row < contact.rows; ++row) {
     const auto at = static_cast<std::size_t>(row);
     const auto place = static_cast<std::size_t>(island.first_row(c)) + at;
-    event.velocity_before[at] = island.before()[place];
-    event.velocity_after[at] = contact.velocity(row, velocity_after);
-    event.impulse[at] = island.impulses()[place];
+    event.velocity_before[at] = island.before()[place] / contact.of_joint.length;
+    event.velocity_after[at] = contact.velocity(row, velocity_after) / contact.of_joint.length;
+    event.impulse[at] = contact.of_joint.length * island.impulses()[place];
   }
   event.mode = island.modes()[c];
   event.outcome = island.report().outcome;

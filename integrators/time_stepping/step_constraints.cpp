@@ -152,7 +152,7 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
     const auto friction = static_cast<std::ptrdiff_t>(out.size());
     detector_.joints().find_friction(components.begin, start, trial.at_start, out);
     // Impulses over the step, also where it is repeated.
-    std::for_each(out.begin() + friction, out.end(), [&](Constraint& at) { at.friction_bound *= in.step; });
+    std::for_each(out.begin() + friction, out.end(), [&](Constraint& at) { at.of_joint.friction_bound *= in.step; });
   }
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
