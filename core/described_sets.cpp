@@ -72,6 +72,17 @@ double reach(std::span<const Outline> outlines, const Vec<2>& to) {
   return most;
 }
 
+/// True if each vertex is a point, and each point one: as the shapes of the library are.
+bool has_same_corners(std::span<const RoundedPoint> points, std::span<const Outline> outlines) {
+  if (outlines.size() != 1 || outlines[0].vertices.size() != points.size()) return false;
+  return std::ranges::all_of(outlines[0].vertices, [&](const Vec<2>& vertex) {
+    return std::ranges::any_of(points, [&](const RoundedPoint& point) {
+      return point.centre[0] == vertex[0] && point.centre[1] == vertex[1] &&
+             point.radius == outlines[0].radius;
+    });
+  });
+}
+
 /// Directions in which two sets that differ are likely to differ most: normals of edges, and around.
 std::vector<Vec<2>> directions_of(std::span<const Outline> outlines) {
   constexpr int around = 64;
@@ -125,7 +136,7 @@ void check_same_set(const PartCheck& check, std::span<const RoundedPoint> points
                     std::span<const Outline> outlines) {
   // Far above the rounding of any way to describe a set, far below what is meant by it.
   constexpr double same = 1e-6;
-  if (points.empty() || outlines.empty()) return;
+  if (points.empty() || outlines.empty() || has_same_corners(points, outlines)) return;
   double size = 0.0;
   const std::vector<Vec<2>> directions = directions_of(outlines);
   for (const Vec<2>& to : directions) size = std::max(size, std::abs(reach(outlines, to)));
