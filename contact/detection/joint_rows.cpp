@@ -184,7 +184,8 @@ double JointRows::length_of(const JointRow& coordinate) const {
       sum += (number / arm) * (number / arm);
     }
   }
-  return sum > 0.0 ? 1.0 / std::sqrt(sum) : 1.0;
+  // A power of two, so that nothing is rounded: what comes to rest does so exactly.
+  return sum > 0.0 ? std::exp2(std::ilogb(1.0 / std::sqrt(sum)) + 1) : 1.0;
 }
 
 }  // namespace carom

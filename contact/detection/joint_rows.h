@@ -21,7 +21,8 @@ namespace carom {
 /// Coordinates that are angles count times an arm, Constraint::OfJoint::length: contacts, limits and friction
 /// in joints are compared with each other and with speeds and gaps in m/s and m, and what is the faster of
 /// two must not depend on the unit of length. The arm is that of the smallest change of velocities, spins
-/// times radii of gyration, that makes a unit rate: 1/|(1/k_a, 1/k_b)| for the angle between two bodies.
+/// times radii of gyration, that makes a unit rate, 1/|(1/k_a, 1/k_b)| for the angle between two bodies; up
+/// to a power of two, so that nothing is rounded.
 class CAROM_API JointRows {
 public:
   /// \param assembly outlives it

@@ -95,7 +95,7 @@ struct TimeStepping {
   /// on terms of the energy ledger, and whether friction in joints that depends on their force takes the
   /// restitution of the contact; and where impacts are located, which end: a contact that closes more slowly
   /// does not rebound (e = 0). On nothing else of the motion [m/s]. Of a limit of an angle: its rate times
-  /// the arm k_a k_b/sqrt(k_a^2 + k_b^2), with the radii of gyration of both bodies.
+  /// the arm k_a k_b/sqrt(k_a^2 + k_b^2), radii of gyration, up to a power of two.
   double capture_speed = 1e-2;
   ImpactRules impact_rules{};  ///< impacts of several contacts, and those that would add energy
 
