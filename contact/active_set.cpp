@@ -221,7 +221,7 @@ void ActiveSet::add_dry_friction(std::size_t first, std::size_t last, double* ac
   for (std::size_t i = first; i < last; ++i) {
     ActiveContact& contact = contacts_[i];
     if (!contact.at.has_dry_friction() || contact.rolls()) continue;
-    contact.normal = contact.at.friction_bound;
+    contact.normal = contact.at.of_joint.friction_bound;
     if (contact.sticks()) continue;
     contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
     JointConstraints& joints = *response_->joints_of(contact.at.body());

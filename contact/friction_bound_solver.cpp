@@ -167,9 +167,9 @@ bool FrictionBoundSolver::converge(const FrictionBoundProblem& problem, SolverCh
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
       Constraint& contact = problem.contacts[c];
       if (!problem.bounds.depends_on_joint_force(contact)) continue;
-      const double before = contact.friction_bound;
+      const double before = contact.of_joint.friction_bound;
       change = std::max(change, problem.bounds.update(contact, problem.at));
-      iteration.add(before, contact.friction_bound);
+      iteration.add(before, contact.of_joint.friction_bound);
       problem.problem.update_bound(c);
     }
     if (iteration.converged(change)) return true;
@@ -177,7 +177,7 @@ bool FrictionBoundSolver::converge(const FrictionBoundProblem& problem, SolverCh
     std::size_t bound = 0;
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
       if (!problem.bounds.depends_on_joint_force(problem.contacts[c])) continue;
-      problem.contacts[c].friction_bound = iteration.guess(bound++);
+      problem.contacts[c].of_joint.friction_bound = iteration.guess(bound++);
       problem.problem.update_bound(c);
     }
   }

@@ -60,10 +60,11 @@ double FrictionBounds::update(Constraint& contact, const JointView& at) const {
   if (bearing == nullptr) return 0.0;
   const JointReaction reaction = bearing->joint->reaction(at, bearing->slot, multipliers_ + bearing->row);
   const double force = std::hypot(reaction.force[0], reaction.force[1], reaction.force[2]);
-  const double bound = duration_ * bearing->bound + bearing->coefficient * force;
-  const double scale = std::max({bound, contact.friction_bound, bearing->coefficient * largest_});
-  const double change = scale > 0.0 ? std::abs(bound - contact.friction_bound) / scale : 0.0;
-  contact.friction_bound = bound;
+  const double coefficient = bearing->coefficient / contact.of_joint.length;
+  const double bound = duration_ * bearing->bound / contact.of_joint.length + coefficient * force;
+  const double scale = std::max({bound, contact.of_joint.friction_bound, coefficient * largest_});
+  const double change = scale > 0.0 ? std::abs(bound - contact.of_joint.friction_bound) / scale : 0.0;
+  contact.of_joint.friction_bound = bound;
   return change;
 }
 

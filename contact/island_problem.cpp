@@ -227,7 +227,8 @@ void IslandProblem::update_bound(std::size_t constraint) {
   const Constraint& at = constraints_[constraint];
   if (at.type == ConstraintType::rolling) return;
   RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint])];
-  const double slides = slides_[constraint] * at.friction_bound, bound = at.friction * at.friction_bound;
+  const double slides = slides_[constraint] * at.of_joint.friction_bound,
+               bound = at.friction * at.of_joint.friction_bound;
   set = {.kind = SetKind::interval,
          .lower = slides_[constraint] != 0.0 ? slides : -bound,
          .upper = slides_[constraint] != 0.0 ? slides : bound};

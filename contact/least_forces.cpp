@@ -69,7 +69,7 @@ void LeastForces::collect_lines(std::span<const ActiveContact> group, const std:
     if (!contact.sticks()) continue;
     const std::size_t tangent = row++;
     const bool has_own_bound = has_dry_friction && !contact.rolls();
-    const double bound = has_own_bound ? contact.at.friction_bound : forces[normal];
+    const double bound = has_own_bound ? contact.at.of_joint.friction_bound : forces[normal];
     for (const double side : {-1.0, 1.0}) {
       lines_at_.push_back(contact.friction * bound + side * forces[tangent]);
       for (std::size_t k = 0; k < vectors; ++k) {

@@ -76,6 +76,15 @@ struct Constraint {
     int columns = 0;    ///< its velocities
   };
 
+  /// Numbers of a limit of a joint, and of friction in one.
+  struct OfJoint {
+    double friction_bound = 0.0;  ///< of friction: `friction` times it is the largest force, or impulse [N]
+    /// What the coordinate is multiplied by, so that all rows have lengths: 1 where it is one; else an arm
+    /// [m], with which velocities along the row are those of places on bodies. The moment of a force along
+    /// the row is the force times it.
+    double length = 1.0;
+  };
+
   // Numbers that the problem of a contact reads come first and close together: many contacts are read in
   // turn.
   ConstraintType type = ConstraintType::contact;        ///< origin
@@ -97,10 +106,9 @@ struct Constraint {
   std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
       jacobian{};  ///< row by row, of columns() numbers each, block after block
 
-  ConstraintKey key;            ///< identity
-  double gap = 0.0;             ///< negative where violated [m]
-  double friction_bound = 0.0;  ///< of friction in a joint: `friction` times it is the largest force [N, N m]
-                                ///< or impulse
+  ConstraintKey key;  ///< identity
+  double gap = 0.0;   ///< negative where violated [m]
+  OfJoint of_joint;   ///< of a limit of a joint, and of friction in one
   std::array<double, static_cast<std::size_t>(max_rows)>
       drift{};  ///< rate of the velocities along the rows at constant velocities of the bodies [m/s^2]
   Index source = none;  ///< of a limit and of friction in a joint: its number in the detector

@@ -1,8 +1,11 @@
 #include <carom/core/described_sets.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 namespace carom {
 
@@ -52,6 +55,52 @@ void check_face(const PartCheck& check, const GroundPiece& face, const std::stri
   if (!(face.depth > 0.0)) check.refuse("depth" + of, to_text(face.depth) + " m", "> 0");
 }
 
+/// How far a set reaches in a direction of length 1 [m].
+double reach(std::span<const RoundedPoint> points, const Vec<2>& to) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const RoundedPoint& point : points) {
+    most = std::max(most, to[0] * point.centre[0] + to[1] * point.centre[1] + point.radius);
+  }
+  return most;
+}
+
+double reach(std::span<const Outline> outlines, const Vec<2>& to) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Outline& outline : outlines) {
+    for (const Vec<2>& vertex : outline.vertices) most = std::max(most, to.dot(vertex) + outline.radius);
+  }
+  return most;
+}
+
+/// True if each vertex is a point, and each point one: as the shapes of the library are.
+bool has_same_corners(std::span<const RoundedPoint> points, std::span<const Outline> outlines) {
+  if (outlines.size() != 1 || outlines[0].vertices.size() != points.size()) return false;
+  return std::ranges::all_of(outlines[0].vertices, [&](const Vec<2>& vertex) {
+    return std::ranges::any_of(points, [&](const RoundedPoint& point) {
+      return point.centre[0] == vertex[0] && point.centre[1] == vertex[1] &&
+             point.radius == outlines[0].radius;
+    });
+  });
+}
+
+/// Directions in which two sets that differ are likely to differ most: normals of edges, and around.
+std::vector<Vec<2>> directions_of(std::span<const Outline> outlines) {
+  constexpr int around = 64;
+  std::vector<Vec<2>> directions;
+  for (int i = 0; i < around; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / around;
+    directions.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  for (const Outline& outline : outlines) {
+    const std::size_t n = outline.vertices.size();
+    for (std::size_t i = 0; n > 1 && i < n; ++i) {
+      const Vec<2> along = (outline.vertices[(i + 1) % n] - outline.vertices[i]).stableNormalized();
+      directions.emplace_back(along[1], -along[0]);
+    }
+  }
+  return directions;
+}
+
 }  // namespace
 
 void check_convex(const PartCheck& check, std::span<const Vec<2>> vertices, std::string_view quantity,
@@ -81,6 +130,24 @@ void check_outline(const PartCheck& check, const Outline& outline) {
   check_set(
       check, outline.vertices, "vertices of its outline",
       "a convex polygon with a vertex at each corner (others can be made of several shapes on one body)");
+}
+
+void check_same_set(const PartCheck& check, std::span<const RoundedPoint> points,
+                    std::span<const Outline> outlines) {
+  // Far above the rounding of any way to describe a set, far below what is meant by it.
+  constexpr double same = 1e-6;
+  if (points.empty() || outlines.empty() || has_same_corners(points, outlines)) return;
+  double size = 0.0;
+  const std::vector<Vec<2>> directions = directions_of(outlines);
+  for (const Vec<2>& to : directions) size = std::max(size, std::abs(reach(outlines, to)));
+  for (const Vec<2>& to : directions) {
+    const double by_points = reach(points, to), by_outlines = reach(outlines, to);
+    if (std::abs(by_points - by_outlines) <= same * size) continue;
+    check.refuse("points that touch",
+                 "reaching " + to_text(by_points) + " m from the centre of mass along " + text(to) +
+                     ", its outline " + to_text(by_outlines) + " m",
+                 "points and an outline of the same set");
+  }
 }
 
 void check_pieces(const PartCheck& check, std::span<const GroundPiece> pieces) {

@@ -21,15 +21,19 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
     }
   }
   std::vector<Outline> outlines;
+  std::vector<RoundedPoint> points;
   for (const Index serial : system.shape_kinds().serials()) {
     const auto place = system.shape_kinds().place(serial);
     const ShapeKind& kind = *system.shape_kinds().entries()[place.entry].kind;
     outlines.clear();
     const PartCheck check(system.name(ShapeId{serial, system.token()}), system);
     kind.outlines(place.slot, check, outlines);
+    for (const Outline& outline : outlines) check_outline(check, outline);
+    points.clear();
+    kind.rounded_points(place.slot, points);
+    check_same_set(check, points, outlines);
     Index feature = 0;
     for (const Outline& outline : outlines) {
-      check_outline(check, outline);
       BodyOutline of_body;
       of_body.body = layout.index(kind.body(place.slot));
       of_body.key = {FeatureKey::Owner::shape, serial, feature};

@@ -6,6 +6,20 @@
 
 namespace carom {
 
+namespace {
+
+/// Radii of gyration of the velocities that are spins; 0 of those of places.
+std::vector<double> arms_of(const Assembly& assembly) {
+  std::vector<double> arms = assembly.length_scales();
+  for (const BodySlot& slot : assembly.layout()->bodies()) {
+    const Index places = slot.rotation == none ? slot.v_size : 2;
+    std::fill_n(arms.begin() + slot.v, places, 0.0);
+  }
+  return arms;
+}
+
+}  // namespace
+
 JointRows::JointRows(const Assembly& assembly)
     : assembly_(&assembly), of_component_(assembly.components().size()) {
   collect(&OfComponent::limits, [this](Row row) {
@@ -17,6 +31,7 @@ JointRows::JointRows(const Assembly& assembly)
   collect(&OfComponent::friction, [this](const Row& row) {
     if (row.kind->has_dry_friction()) rows_.push_back(row);
   });
+  if (!rows_.empty()) arms_ = arms_of(assembly);
 }
 
 template <class F>
@@ -54,10 +69,10 @@ void JointRows::find_limits(Index component, const ContactQuery& query, std::vec
   JointLimit limit;
   for (Index i = limits.begin; i < limits.end; ++i) {
     rows_[i].kind->limit(at, rows_[i].slot, rows_[i].limit, limit);
-    const double gap = limit.row.gap;
+    const double length = length_of(limit.row), gap = length * limit.row.gap;
     const bool touches = gap <= query.margin;
     if (!touches && (query.lasting == nullptr ||
-                     !query.lasting->lasts(key_of(rows_[i]), gap, std::abs(limit.row.drift)))) {
+                     !query.lasting->lasts(key_of(rows_[i]), gap, length * std::abs(limit.row.drift)))) {
       continue;
     }
     Constraint& constraint = out.emplace_back();
@@ -107,11 +122,11 @@ void JointRows::fill_limit(Index number, const JointLimit& limit, Constraint& ou
   out.key = key_of(rows_[number]);
   out.type = ConstraintType::limit;
   out.source = number;
-  out.gap = limit.row.gap;
   out.law.friction = 0.0;
   out.law.normal_restitution = limit.restitution;
   out.law.tangential_restitution = 0.0;
   take(limit.row, rows_[number].bodies, out);
+  out.gap = out.of_joint.length * limit.row.gap;
 }
 
 void JointRows::fill_friction(Index number, const JointView& at, Constraint& out) const {
@@ -120,11 +135,11 @@ void JointRows::fill_friction(Index number, const JointView& at, Constraint& out
   out.key = key_of(row);
   out.type = ConstraintType::joint_friction;
   out.source = number;
-  out.friction_bound = friction.bound;
   out.friction = out.law.friction = 1.0;
   out.law.static_friction = friction.static_factor;
   out.law.normal_restitution = out.law.tangential_restitution = 0.0;
   update_friction(at, out);
+  out.of_joint.friction_bound = friction.bound / out.of_joint.length;
 }
 
 void JointRows::update_friction(const JointView& at, Constraint& constraint) const {
@@ -152,7 +167,25 @@ void JointRows::take(const JointRow& from, const JointBodies& bodies, Constraint
     out.add_body(*owner, block.v, block.columns);
     place = std::copy_n(block.jacobian.begin(), block.columns, place);
   }
-  out.drift[0] = from.drift;
+  out.of_joint.length = length_of(from);
+  std::for_each(out.row(0), out.row(1), [&](double& number) { number *= out.of_joint.length; });
+  out.drift[0] = out.of_joint.length * from.drift;
+}
+
+double JointRows::length_of(const JointRow& coordinate) const {
+  double sum = 0.0;
+  for (int b = 0; b < coordinate.bodies; ++b) {
+    const JointRow::Block& block = coordinate.blocks[static_cast<std::size_t>(b)];
+    for (int c = 0; c < block.columns; ++c) {
+      const double number = block.jacobian[static_cast<std::size_t>(c)];
+      if (number == 0.0) continue;
+      const double arm = arms_[block.v + static_cast<Index>(c)];
+      if (arm == 0.0) return 1.0;  // it moves a place
+      sum += (number / arm) * (number / arm);
+    }
+  }
+  // A power of two, so that nothing is rounded: what comes to rest does so exactly.
+  return sum > 0.0 ? std::exp2(std::ilogb(1.0 / std::sqrt(sum)) + 1) : 1.0;
 }
 
 }  // namespace carom

@@ -17,6 +17,12 @@ namespace carom {
 
 /// Limits of the joints of an assembly, by component, then friction in them, by component. A row is known by
 /// its number in this list (Constraint::source, ContactPair::joint_row).
+///
+/// Coordinates that are angles count times an arm, Constraint::OfJoint::length: contacts, limits and friction
+/// in joints are compared with each other and with speeds and gaps in m/s and m, and what is the faster of
+/// two must not depend on the unit of length. The arm is that of the smallest change of velocities, spins
+/// times radii of gyration, that makes a unit rate, 1/|(1/k_a, 1/k_b)| for the angle between two bodies; up
+/// to a power of two, so that nothing is rounded.
 class CAROM_API JointRows {
 public:
   /// \param assembly outlives it
@@ -77,10 +83,13 @@ private:
   [[nodiscard]] static ConstraintKey key_of(const Row& row);
   void fill_limit(Index number, const JointLimit& limit, Constraint& out) const;
   void fill_friction(Index number, const JointView& at, Constraint& out) const;
-  // Makes a row of a joint that of a constraint.
+  // Makes a row of a joint that of a constraint, in lengths.
   void take(const JointRow& from, const JointBodies& bodies, Constraint& out) const;
+  // Constraint::OfJoint::length of a row.
+  [[nodiscard]] double length_of(const JointRow& coordinate) const;
 
   const Assembly* assembly_;
+  std::vector<double> arms_;  // by velocity: radius of gyration of a spin [m], else 0
   std::vector<Row> rows_;
   Index first_friction_ = 0;  // behind the last limit
   std::vector<OfComponent> of_component_;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 namespace carom {
 
@@ -124,9 +125,10 @@ bool ExactSolvers::attempt(const ContactProblem& problem, SolverId id, ExactAtte
 // regular, so that pivoting does not lose its digits in rows that almost follow from each other (bodies that
 // lie along each other), and an answer near P is one of the problem but for s times how far it is from P
 // (the proximal point method: R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877). Impulses without end
-// are no answer: s stays so large that the residual tells.
+// are no answer: s stays so large that the residual tells. Nor are impulses that creep, as those of a body on
+// a light one do that is too heavy for the digits there are: changes have to shrink.
 bool ExactSolvers::approach(const ContactProblem& problem, ExactAttempt& state) {
-  constexpr double near = 1e-3, softest = 1e-5, hardest = 1e-8, harder = 0.5;
+  constexpr double near = 1e-3, softest = 1e-5, hardest = 1e-8, harder = 0.5, shrinking = 0.5;
   constexpr int most_problems = 30;
   if (!(state.report.residual <= near) || state.report.residual <= tolerated_residual) return false;
   const auto follows = [](const RowSet& set) {  // there may be no answer
@@ -134,10 +136,14 @@ bool ExactSolvers::approach(const ContactProblem& problem, ExactAttempt& state) 
   };
   if (std::ranges::any_of(problem.sets(), follows)) return false;
   anchor_.assign(state.impulse.begin(), state.impulse.end());
-  double softness = softest;
+  double softness = softest, last = 0.0;
   for (int i = 0; i < most_problems; ++i, softness = std::max(harder * softness, hardest)) {
     if (!solve_near(problem, softness)) continue;
+    double change = 0.0;
+    for (std::size_t row = 0; row < trial_.size(); ++row)
+      change = std::max(change, std::abs(trial_[row] - anchor_[row]));
     anchor_ = trial_;
+    if (!(change <= shrinking * std::exchange(last, change))) continue;
     problem.velocities(trial_, trial_xi_);
     Residual found = residual(problem, trial_, trial_xi_);
     if (found.value > accepted_residual && found.value <= tolerated_residual) {

@@ -40,7 +40,30 @@ BodyFlights::BodyFlights(const Assembly& assembly, const Detector& detector)
   }
 }
 
+/// The frame goes on with the mean velocity of the bodies if they fly together: if all move against it at
+/// less than a quarter of it.
+void BodyFlights::choose_frame(const State& state) {
+  constexpr double together = 0.25;
+  Vec<2> sum = Vec<2>::Zero();
+  double count = 0.0, most = 0.0;
+  const auto for_velocities = [&](auto&& f) {
+    for (Index body = 0; body < flights_.size(); ++body) {
+      const Index v = assembly_->layout()->bodies()[body].v;
+      if (flights_[body].reach >= 0.0) f(Vec<2>(state.v[v], state.v[v + 1]));
+    }
+  };
+  for_velocities([&](const Vec<2>& velocity) {
+    sum += velocity;
+    count += 1.0;
+  });
+  frame_ = sum / std::max(count, 1.0);
+  for_velocities([&](const Vec<2>& velocity) { most = std::max(most, (velocity - frame_).norm()); });
+  if (!(most < together * frame_.norm())) frame_.setZero();
+  frame_time_ = state.time;
+}
+
 void BodyFlights::start(const State& state, double extra) {
+  choose_frame(state);
   double size = 0.0, count = 0.0;
   Vec<2> low(never, never), high(-never, -never);
   for (Index body = 0; body < flights_.size(); ++body) {
@@ -99,12 +122,12 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
         const Index v = assembly_->layout()->bodies()[body].v;
         const Vec<2> later(end.state.v[v], end.state.v[v + 1]),
             pull(end.acceleration[v], end.acceleration[v + 1]);
-        flight.speed = std::max(flight.velocity.norm(), later.norm()) +
+        flight.speed = std::max((flight.velocity - frame_).norm(), (later - frame_).norm()) +
                        unseen * (due - time) * std::max(flight.acceleration.norm(), pull.norm());
       });
     }
     for_flights([&](Index, const BodyFlight& flight) {
-      const double v = is_free ? flight.velocity.norm() : flight.speed;
+      const double v = is_free ? (flight.velocity - frame_).norm() : flight.speed;
       const double a = is_free ? flight.acceleration.norm() : 0.0;
       const double length = 2.0 * travel_ / (v + std::sqrt(v * v + 2.0 * a * travel_));
       if (time + length > time) horizon = std::min(horizon, time + length);
@@ -118,16 +141,18 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
 /// Sets the volume of a body that it covers within a length of time.
 void BodyFlights::sweep(Index body, double length) {
   const BodyFlight& flight = flights_[body];
+  const Vec<2> velocity = flight.velocity - frame_,
+               place = flight.place - (flight.time - frame_time_) * frame_;
   Box<2> box;
   for (int k = 0; k < 2; ++k) {
     if (flight.is_free) {
-      span_parabola(flight.place[k], flight.velocity[k], flight.acceleration[k], length, box.min[k],
-                    box.max[k]);
+      span_parabola(place[k], velocity[k], flight.acceleration[k], length, box.min[k], box.max[k]);
     } else {
-      box.min[k] = flight.place[k] - length * flight.speed;
-      box.max[k] = flight.place[k] + length * flight.speed;
+      box.min[k] = place[k] - length * flight.speed;
+      box.max[k] = place[k] + length * flight.speed;
     }
-    const double size = std::max(std::abs(box.min[k]), std::abs(box.max[k])) + flight.reach;
+    const double size =
+        std::max({std::abs(box.min[k]), std::abs(box.max[k]), std::abs(flight.place[k])}) + flight.reach;
     const double reach = flight.reach + place_rounding * size;
     box.min[k] -= reach;
     box.max[k] += reach;

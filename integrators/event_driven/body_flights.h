@@ -10,6 +10,9 @@
 /// along a parabola, whose box is exact. Any other moves no faster than the faster end of its step and twice
 /// what its accelerations at the ends change over the step, the bound that the search for events within a
 /// group rests on.
+///
+/// Volumes are those in a frame that goes on evenly, with all bodies where they fly together at first, so
+/// that how long they hold depends on how fast bodies move against each other; else at rest.
 
 #include <carom/contact/detection/swept_volumes.h>
 #include <carom/core/assembly.h>
@@ -28,9 +31,9 @@ struct BodyFlight {
   Vec<2> velocity = Vec<2>::Zero();      ///< then [m/s]
   Vec<2> acceleration = Vec<2>::Zero();  ///< then [m/s^2]
   double reach = -1.0;                   ///< of its outlines from there [m]; < 0: it has none
-  double speed = 0.0;                    ///< bound of it, where it does not fly freely [m/s]
-  Index component = none;                ///< it is of
-  bool is_free = false;                  ///< nothing but uniform fields acts: the acceleration stays
+  double speed = 0.0;      ///< bound of it in the frame of the volumes, where it does not fly freely [m/s]
+  Index component = none;  ///< it is of
+  bool is_free = false;    ///< nothing but uniform fields acts: the acceleration stays
 
   /// Place of a body that flies freely at a time [m].
   [[nodiscard]] Vec<2> place_at(double at) const {
@@ -59,13 +62,16 @@ public:
   [[nodiscard]] const SweptVolumes& volumes() const { return volumes_; }
 
 private:
+  void choose_frame(const State& state);
   void sweep(Index body, double length);
 
   const Assembly* assembly_;
   std::vector<BodyFlight> flights_;
   std::vector<double> horizons_;  // by component
   SweptVolumes volumes_;
-  double travel_ = 0.0;  // the way that a volume is made for [m]
+  Vec<2> frame_ = Vec<2>::Zero();  // its velocity [m/s]
+  double frame_time_ = 0.0;        // when places in it are those at rest [s]
+  double travel_ = 0.0;            // the way that a volume is made for [m]
 };
 
 }  // namespace carom

@@ -88,7 +88,7 @@ Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event b
     if (step.is_active[pair] != 0 || from[pair] >= step.end()) continue;
     ClosingRule rule;
     rule.noise = step.scales.gap_noise;
-    rule.fine = fine_gap(*model.options);
+    rule.fine = std::max(fine_gap(*model.options), rule.noise);  // far away gaps are not known better
     rule.level = step.ends.gap_level(pair);
     rule.fastest = fastest_in(step, place);
     if (start.gaps[pair].value + end.gaps[pair].value - rule.fastest * length > 2.0 * rule.noise) continue;

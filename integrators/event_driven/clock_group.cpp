@@ -150,7 +150,9 @@ JointReaction ClockGroup::reaction(const JointKind& kind, Index slot, JointId jo
         std::find_if(closed.begin(), closed.end(), [&](const ActiveContact& contact) {
           return contact.at.has_dry_friction() && !contact.rolls() && contact.at.key.a.serial == joint.serial;
         });
-    const double force = has_dry_friction == closed.end() ? 0.0 : has_dry_friction->tangential;
+    const double force = has_dry_friction == closed.end()
+                             ? 0.0
+                             : has_dry_friction->at.of_joint.length * has_dry_friction->tangential;
     return kind.reaction(at.joint_view(), slot, &force);
   }
   const std::span<const double> multipliers = parts_.motion.joints().multipliers(at, closed);

@@ -122,9 +122,9 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
       const auto place = static_cast<std::size_t>(problem.first_row(c) + row);
       const double before = problem.before()[place], after = contact.velocity(row, impact.velocity);
       const double impulse = problem.impulses()[place];
-      event.velocity_before[at] = before;
-      event.velocity_after[at] = after;
-      event.impulse[at] = impulse;
+      event.velocity_before[at] = before / contact.of_joint.length;
+      event.velocity_after[at] = after / contact.of_joint.length;
+      event.impulse[at] = contact.of_joint.length * impulse;
       const double of_row = work.add(impulse, before, after);
       event.contact_work += of_row;
       flows[line_of(impact.kind, row)] -= of_row;
@@ -135,7 +135,7 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
       const PointOfContact place = point_of_contact(contact, event.motions[0].position.data());
       event.point = place.point;
       event.normal = place.normal;
-      event.gap = contact.gap;
+      event.gap = contact.gap / contact.of_joint.length;
       set_after(contact, impact.velocity, assembly, event.motions);
     }
     event.energy_before = impact.energy_before;
@@ -186,7 +186,7 @@ void EventBalance::book_joints(const SolvedImpact& impact, const GroupModel& mod
     const Constraint& contact = problem.constraints()[c];
     if (!contact.has_dry_friction() || contact.type == ConstraintType::rolling) continue;
     JointReaction reaction;
-    reaction.moment = problem.map().impulse(c, 0);
+    reaction.moment = contact.of_joint.length * problem.map().impulse(c, 0);
     const JointId friction{contact.key.a.serial, model.assembly->system().token()};
     joint_impulses.push_back({friction, reaction, impact.time});
   }

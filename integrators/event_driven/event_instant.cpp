@@ -90,7 +90,7 @@ void EventInstant::take_velocities() {
 double largest_acceleration(std::span<const Constraint> constraints, const EventInstant& at) {
   double largest = 0.0;
   for (const Constraint& constraint : constraints) {
-    if (constraint.type == ConstraintType::joint_friction) continue;
+    if (constraint.has_dry_friction()) continue;
     for (int row = 0; row < constraint.rows; ++row)
       largest = std::max(largest, std::abs(constraint.acceleration(row, at.now.acceleration.data())));
   }

@@ -92,7 +92,7 @@ private:
   [[nodiscard]] double near() const;
 };
 
-/// Largest acceleration of constraints, friction in joints apart, along their rows at an instant [m/s^2].
+/// Largest acceleration of contacts and limits along their rows at an instant [m/s^2].
 [[nodiscard]] double largest_acceleration(std::span<const Constraint> constraints, const EventInstant& at);
 /// Solves for the velocities after some time under the accelerations of an instant, b = gamma + time a.
 /// \param time [s] \param constraints without restitution; their rows turn during that time \param ahead

@@ -147,7 +147,8 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
     const bool moving = moves(*step.motion.model().detector, step.motion.model().pairs[i]);
     FallRule rule;
     rule.raise = step.scales.gap_noise - step.ends.gap_level(i);
-    rule.fine = fine_gap(*step.motion.model().options);
+    // Far away gaps are not known better than to their rounding.
+    rule.fine = std::max(fine_gap(*step.motion.model().options), step.scales.gap_noise);
     rule.clear_falls = false;  // of several gaps the first is wanted
     rule.measured = moving || !step.motion.is_ballistic();
     rule.least_depth = moving ? least_of_moving : 0;

@@ -23,7 +23,7 @@ bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, Solv
   if (!(pull > 0.0)) return false;
   // A contact that parts at the capture speed has come back by then.
   const double time = 2.0 * capture_ / pull;
-  for (Constraint& contact : touching_) contact.friction_bound *= time;  // of friction in a joint
+  for (Constraint& contact : touching_) contact.of_joint.friction_bound *= time;  // of friction in a joint
   return solve_ahead(time, touching_, at, ahead_, problem_, chain) && list_held(at) &&
          closing_.close(held_, pairs, at);
 }

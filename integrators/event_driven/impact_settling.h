@@ -27,10 +27,11 @@ namespace carom {
 class CAROM_API ImpactSettling {
 public:
   /// Closes contacts of an island that were closed before the event and part slower than the capture speed,
-  /// and stops those that slide slower, friction in joints included (rates of angles as those of lengths),
-  /// where forces of contact do so, or turn them back, within the time in which what parts at that speed
-  /// comes back. Books the energy as that of accumulations. True if velocities changed; the instant is up to
-  /// date then, and contacts may approach each other. \param at brought to the state after the impacts
+  /// and stops those that slide slower, friction in joints included (rates of angles times an arm,
+  /// Constraint::OfJoint::length), where forces of contact do so, or turn them back, within the time in which
+  /// what parts at that speed comes back. Books the energy as that of accumulations. True if velocities
+  /// changed; the instant is up to date then, and contacts may approach each other. \param at brought to the
+  /// state after the impacts
   [[nodiscard]] bool settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain);
 
 private:

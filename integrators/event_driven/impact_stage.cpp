@@ -166,7 +166,7 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
     }
     Constraint& contact = touching.emplace_back(at.contacts[i]);
     memory_->places.push_back(i);
-    contact.friction_bound = 0.0;
+    contact.of_joint.friction_bound = 0.0;
     // Rounding is no sliding: what sticks has its static friction.
     const double sliding = contact.sliding_speed(at.velocities());
     if (!rolling) contact.friction = contact.law.friction_at(sliding > at.scales.speed_noise ? sliding : 0.0);

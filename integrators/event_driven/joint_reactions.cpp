@@ -74,7 +74,7 @@ bool JointReactions::add_contact_forces(ActiveSet& active, MotionSample& at) {
     std::size_t bound = 0;
     for (ActiveContact& contact : active.list()) {
       if (joints_->bounds.depends_on_joint_force(contact.at))
-        contact.at.friction_bound = iteration.guess(bound++);
+        contact.at.of_joint.friction_bound = iteration.guess(bound++);
     }
   }
   return false;
@@ -88,9 +88,9 @@ bool JointReactions::update_bounds_once(ActiveSet& active, MotionSample& at, Bou
   joints_->bounds.take(forces.data(), 1.0, largest_load(at));
   for (ActiveContact& contact : active.list()) {
     if (!joints_->bounds.depends_on_joint_force(contact.at)) continue;
-    const double before = contact.at.friction_bound;
+    const double before = contact.at.of_joint.friction_bound;
     change = std::max(change, joints_->bounds.update(contact.at, at.joint_view()));
-    iteration.add(before, contact.at.friction_bound);
+    iteration.add(before, contact.at.of_joint.friction_bound);
   }
   return true;
 }

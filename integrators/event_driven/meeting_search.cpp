@@ -160,7 +160,7 @@ double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, dou
   const PairGap gap{*assembly_, *detector_, pair, bound};
   ClosingRule rule;
   rule.noise = noise(bodies, bound);
-  rule.fine = fine_gap(*options_);
+  rule.fine = std::max(fine_gap(*options_), rule.noise);  // far from the origin gaps are not known better
   rule.flies_freely = bodies.a.is_free && bodies.b.is_free;
   rule.until = never;
   if (rule.flies_freely && bound.central && bound.rounding > 0.0) {

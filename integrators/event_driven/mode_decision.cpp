@@ -335,7 +335,8 @@ bool ModeDecision::converge_friction_bounds(SmoothMotion& motion, MotionSample& 
       if (candidates[taking_part_[c]].mode == ContactMode::open) continue;
       const ActiveContact& closed = active_[at++];
       if (!motion.joints().depends_on_joint_force(contacts_[c])) continue;
-      contacts_[c].friction_bound = guesses ? iteration.guess(bound++) : closed.at.friction_bound;
+      contacts_[c].of_joint.friction_bound =
+          guesses ? iteration.guess(bound++) : closed.at.of_joint.friction_bound;
       problem_.update_bound(c);
     }
     if (converged) return true;

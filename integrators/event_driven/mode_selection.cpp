@@ -310,7 +310,8 @@ void ModeSelection::record_changes(EventInstant& at) const {
     EventRecord& event = at.balance.record(kind, at.time, contact, *model.assembly);
     for (int row = 0; row < contact.rows; ++row) {
       event.velocity_before[static_cast<std::size_t>(row)] =
-          event.velocity_after[static_cast<std::size_t>(row)] = contact.velocity(row, velocity);
+          event.velocity_after[static_cast<std::size_t>(row)] =
+              contact.velocity(row, velocity) / contact.of_joint.length;
     }
     note_motions(contact, at, event);
     event.energy_before = event.energy_after =

@@ -250,7 +250,7 @@ void MotionJacobian::differentiate_friction_bound(const MotionSample& sample, co
     Constraint moved = contact.at;
     bounds.take(forces.data(), 1.0);
     bounds.update(moved, sample.joint_view());
-    return moved.friction_bound;
+    return moved.of_joint.friction_bound;
   };
   for (Index row = rows.begin; row < rows.end; ++row) {
     if (row_multipliers_[row] == none) continue;

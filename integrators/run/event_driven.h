@@ -62,8 +62,8 @@ struct EventDriven {
   double gap_tolerance = 1e-9;
   /// Impacts with no faster approach than this are solved without restitution and close the contacts, > 0
   /// [m/s]: they end accumulations of impacts (Zeno). The neglected bounces are not higher than its square
-  /// over 2 g, 5e-10 m for the default; the energy is booked as `accumulation`. Of a limit: the rate of its
-  /// coordinate, rad/s where that is an angle.
+  /// over 2 g, 5e-10 m for the default; the energy is booked as `accumulation`. Of a limit of an angle: its
+  /// rate times the arm k_a k_b/sqrt(k_a^2 + k_b^2), radii of gyration, up to a power of two.
   double capture_speed = 1e-4;
   ImpactRules impact_rules{};  ///< impacts of several contacts, and those that would add energy
   /// After each step velocities are projected onto joints and closed contacts. A projection that changes them

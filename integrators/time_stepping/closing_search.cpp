@@ -35,11 +35,11 @@ bool ClosingSearch::may_close(const Constraint& contact, Modes acted) const {
 bool ClosingSearch::was_open(const Constraint& contact, const State& start) {
   const auto is_it = [&](const Constraint& other) { return other.key == contact.key; };
   const auto known = std::find_if(at_start_.begin(), at_start_.end(), is_it);
-  if (known != at_start_.end()) return known->gap >= -rounding;
+  if (known != at_start_.end()) return known->gap >= -rounding_;
   const bool is_alone = std::none_of(at_start_.begin(), at_start_.end(), [&](const Constraint& other) {
-    return have_same_parts(other.key, contact.key) && other.gap < -rounding;
+    return have_same_parts(other.key, contact.key) && other.gap < -rounding_;
   });
-  return is_alone || gap_of_vertex(contact, start) >= -rounding;
+  return is_alone || gap_of_vertex(contact, start) >= -rounding_;
 }
 
 /// Least gap of the parts of a contact at the start, at least as large as `reach` where none is listed [m].
@@ -68,7 +68,7 @@ ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end,
   // A contact with gap g < 0 has closed, even where it recedes again, past the middle of the other body, if
   // it came fast: slow contacts that dip by little are not worth a part.
   std::erase_if(at_end_, [&](const Constraint& contact) {
-    const bool closes = contact.normal_velocity(v) < 0.0 || contact.gap < -rounding;
+    const bool closes = contact.normal_velocity(v) < 0.0 || contact.gap < -rounding_;
     return !closes || !may_close(contact, acted);
   });
   Closing first;

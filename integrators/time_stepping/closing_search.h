@@ -12,6 +12,7 @@
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 #include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/gap_rounding.h>
 
 #include <limits>
 #include <span>
@@ -23,8 +24,6 @@ namespace carom {
 /// Searches the ends of steps for closings. Keeps memory, and what has closed in a step.
 class CAROM_API ClosingSearch {
 public:
-  /// A contact that hits within rounding, if a step ends there [m]: so it takes part in the next.
-  static constexpr double rounding = 1e-12;
   /// Modes of the contacts that acted in a step, as Companion::modes.
   using Modes = std::span<const std::pair<ConstraintKey, ContactMode>>;
 
@@ -33,23 +32,25 @@ public:
     double gap = std::numeric_limits<double>::infinity();  ///< [m]; infinite: none is near
     double rate = 0.0;                                     ///< of the gap [m/s]
     ConstraintKey key;                                     ///< which it is
-
-    /// True if the part ends too late.
-    [[nodiscard]] bool is_late() const { return gap < -rounding; }
-    /// True if it ends when the contact closes.
-    [[nodiscard]] bool is_now() const { return gap <= 0.0 && !is_late(); }
   };
 
   /// Both must outlive it.
   ClosingSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options)
       : look_(assembly, detector),
         most_impacts_(options.most_impacts),
+        rounding_(gap_rounding(options)),
         capture_speed_(options.capture_speed) {}
 
   /// Forgets what has closed: a step begins.
   void begin_step() { closed_.clear(); }
   /// The closing that a part of a step from one state to another passes first, or nearly reaches.
   [[nodiscard]] Closing look(const State& start, const State& end, Modes acted);
+  /// A contact hits within this if a part ends there, and takes part in the next (gap_rounding.h) [m].
+  [[nodiscard]] double rounding() const { return rounding_; }
+  /// True if the part ends too late for a closing.
+  [[nodiscard]] bool is_late(const Closing& closing) const { return closing.gap < -rounding_; }
+  /// True if it ends when the contact closes.
+  [[nodiscard]] bool is_now(const Closing& closing) const { return closing.gap <= 0.0 && !is_late(closing); }
   /// Counts a closing at which a part ends. One contact has as many of them, fast and slow ones, as
   /// TimeStepping::most_impacts in a step; after these it acts from the next step on.
   void count(const Closing& closing);
@@ -66,6 +67,7 @@ private:
 
   ContactLook look_;
   int most_impacts_;
+  double rounding_;
   double capture_speed_;
   std::vector<Constraint> at_start_, at_end_;
   std::vector<Count> closed_;

@@ -71,6 +71,7 @@ public:
     write_place(at, entry);
     write_answer(answer, entry);
     book_rows(at, before, answer.impulses, work.sum, entry);
+    if (at.type == ConstraintType::limit) tell_in_coordinate(at, entry);
   }
 
 private:
@@ -83,6 +84,14 @@ private:
     entry.gap = at.gap;
     entry.point = entry.normal = {};
     find_point_of_contact(at, in_.start.q.data() + body.q, entry.point, entry.normal);
+  }
+
+  /// A limit is told in the unit of its coordinate.
+  static void tell_in_coordinate(const Constraint& at, ContactRecord& entry) {
+    entry.gap /= at.of_joint.length;
+    entry.velocity_before[0] /= at.of_joint.length;
+    entry.velocity_after[0] /= at.of_joint.length;
+    entry.impulse[0] *= at.of_joint.length;
   }
 
   /// When it acted, and how its problem was solved. The rest of the note is of whole impacts, and of rows
@@ -310,7 +319,7 @@ void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t 
                                ? at.times(0, trial.midpoint.v.data())
                                : 0.5 * (before + at.velocity_after(0, after) + made_up);
   JointReaction reaction;
-  reaction.moment = moment;
+  reaction.moment = at.of_joint.length * moment;
   result_.flows[EnergyFlow::joint_friction] -= moment * mean_rate;
   sum.gain += moment * mean_rate;
   sum.scale += 2.0 * std::abs(moment) * std::max(std::abs(before), std::abs(mean_rate));

@@ -28,7 +28,7 @@ void take(const Constraint& from, Constraint& to) {
   to.jacobian = from.jacobian;
   to.surface_velocity = from.surface_velocity;
   to.surface_velocity_after = from.surface_velocity_after;
-  to.friction_bound = from.friction_bound;
+  to.of_joint.friction_bound = from.of_joint.friction_bound;
 }
 
 }  // namespace

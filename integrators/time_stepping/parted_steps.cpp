@@ -36,7 +36,7 @@ PartedSteps::PartedSteps(const Assembly& assembly, TimeStepper& stepper) : stepp
   if (stepper.ends_at_closings()) {
     closings_ = std::make_unique<ClosingSearch>(assembly, stepper.detector(), stepper.options());
   } else {
-    passages_ = std::make_unique<PassageSearch>(assembly, stepper.detector());
+    passages_ = std::make_unique<PassageSearch>(assembly, stepper.detector(), stepper.options());
   }
 }
 
@@ -85,7 +85,7 @@ void PartedSteps::part_before_passage(const Whole& whole, double length) {
 /// A part up to the end of the step, or to the first closing: the root of a gap over the length of the part,
 /// by Newton's method, kept between an end at which all is open and one at which it is not.
 void PartedSteps::part_at_closing(const Whole& whole, double length) {
-  constexpr double aim = 0.5 * ClosingSearch::rounding;
+  const double aim = 0.5 * closings_->rounding();
   const double begin = done_.state.time;
   if (!may_search()) return make_part(length, whole.end);
   double open = begin, closed = std::numeric_limits<double>::infinity();
@@ -93,10 +93,10 @@ void PartedSteps::part_at_closing(const Whole& whole, double length) {
   for (double end = whole.end;;) {
     make_part(length, end);
     const ClosingSearch::Closing found = closings_->look(done_.state, trial_.state, trial_.companion.modes);
-    (found.is_late() ? closed : open) = end;
+    (closings_->is_late(found) ? closed : open) = end;
     if (open == whole.end) return;
     if (found.gap <= 0.0) hit = found;
-    if (found.is_now()) break;
+    if (closings_->is_now(found)) break;
     double next = end - (found.gap + aim) / found.rate;
     if (!(next > open && next < closed)) next = 0.5 * (open + closed);
     const bool is_between = next > open && next < closed;

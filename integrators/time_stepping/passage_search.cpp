@@ -1,6 +1,7 @@
 // Problem: end a step before something is so deep in a thin thing that it would leave it on the far side.
 
 #include <carom/contact/detection/convex_outline.h>
+#include <carom/integrators/time_stepping/gap_rounding.h>
 #include <carom/integrators/time_stepping/passage_search.h>
 
 #include <algorithm>
@@ -15,8 +16,6 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 // Share of the radii of the circles in both that a pair may come deep.
 constexpr double deep = 1.0 / 8.0;
-// Stands for the thickness of what has none [m].
-constexpr double least_depth = 1e-9;
 
 /// Radius of a circle in a convex set: a third of its width (W. Blaschke, Kreis und Kugel, 1916), and what
 /// widens it.
@@ -32,16 +31,19 @@ double circle_in(const ConvexOutline& of) {
   return of.radius + width / 3.0;
 }
 
+/// Nothing leaves ground without a far side (the outside of a box or of a circle), but it may end a step far
+/// outside. It adds no thickness: how deep a body may come in it depends on the body alone.
 double circle_in(const GroundPieces& pieces, Index outline) {
   const GroundOutline& of = pieces.outlines()[outline];
-  if (of.is_hollow()) return infinite;
-  return of.is_chain() ? 0.5 * of.depth : circle_in(pieces.view(outline));
+  if (of.is_hollow()) return 0.0;
+  if (of.is_chain()) return std::isfinite(of.depth) ? 0.5 * of.depth : 0.0;
+  return circle_in(pieces.view(outline));
 }
 
 }  // namespace
 
-PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector)
-    : look_(assembly, detector), at_(assembly.initial_state()) {
+PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options)
+    : look_(assembly, detector), least_depth_(1e3 * gap_rounding(options)), at_(assembly.initial_state()) {
   reach_.assign(assembly.layout()->bodies().size(), 0.0);
   displacement_.resize(at_.v.size());
   const auto add_all = [&](const BodyOutlines& outlines) {
@@ -56,7 +58,9 @@ PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector)
     add_all(detector.pieces().outlines());
     const GroundPieces& pieces = detector.pieces().pieces();
     for (Index i = 0; i < pieces.outlines().size(); ++i) {
-      add(pieces.outlines()[i].key, circle_in(pieces, i));
+      const GroundOutline& of = pieces.outlines()[i];
+      add(of.key, circle_in(pieces, i));
+      if (of.is_hollow()) hollows_.push_back(of.key);
     }
   }
   set_thinnest();
@@ -71,7 +75,7 @@ void PassageSearch::set_thinnest() {
     any = std::min(any, thickness);
     if (key.owner != FeatureKey::Owner::obstacle) body = std::min(body, thickness);
   }
-  thinnest_ = std::max(least_depth, deep * (body + any));
+  thinnest_ = std::max(least_depth_, deep * (body + any));
 }
 
 /// The outline that a feature is of; the end where it is one without pieces (half-planes).
@@ -92,21 +96,39 @@ double PassageSearch::allowed(const Constraint& contact) const {
   if (contact.type != ConstraintType::contact) return infinite;
   const auto a = outline(contact.key.a), b = outline(contact.key.b);
   if (a == thickness_.end() || b == thickness_.end()) return infinite;
-  return std::max(least_depth, deep * (a->second + b->second));
+  return std::max(least_depth_, deep * (a->second + b->second));
 }
 
-/// How much nearer the pair of a contact may come along its normal over a whole step [m].
-double PassageSearch::approach(const Constraint& contact) const {
+/// True of a contact with the inside of a circle.
+bool PassageSearch::is_hollow(const Constraint& contact) const {
+  return std::any_of(hollows_.begin(), hollows_.end(),
+                     [&](const FeatureKey& hollow) { return outline(contact.key.b)->first == hollow; });
+}
+
+/// How much nearer the pair of a contact may come along a row over a whole step, but for turning [m].
+double PassageSearch::approach_along(const Constraint& contact, int i) const {
   constexpr double caution = 2.0;  // in between ground may go faster than it does now and at the end
-  const double speed = contact.surface_velocity[0], change = contact.surface_velocity_after[0] - speed;
+  const auto at = static_cast<std::size_t>(i);
+  const double speed = contact.surface_velocity[at], change = contact.surface_velocity_after[at] - speed;
   double sum = (speed + caution * std::abs(change)) * step_;
-  const double* row = contact.row(0);
+  const double* row = contact.row(i);
   for (int b = 0; b < contact.bodies; ++b) {
     const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
     sum -= row[0] * displacement_[block.v] + row[1] * displacement_[block.v + 1];
+    row += block.columns;
+  }
+  return sum;
+}
+
+/// How much nearer the pair of a contact may come over a whole step [m]: convex things along their normal;
+/// what is inside a circle comes nearer to it by going along it, too.
+double PassageSearch::approach(const Constraint& contact) const {
+  double sum = approach_along(contact, 0);
+  if (is_hollow(contact)) sum = std::hypot(sum, approach_along(contact, 1));
+  for (int b = 0; b < contact.bodies; ++b) {
+    const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
     constexpr int turning = 3;
     if (block.columns == turning) sum += reach_[block.body] * std::abs(displacement_[block.v + 2]);
-    row += block.columns;
   }
   return sum;
 }

@@ -9,7 +9,8 @@
 /// largest rate at which they come nearer along n: that of their translation, and for each turning one the
 /// size of its spin times the reach of its vertices. So looks from one such time to the next miss nothing
 /// (conservative advancement: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, Berkeley
-/// 1996, chapter 2). Of moving ground the velocity at the look is taken, and twice what it changes up to the
+/// 1996, chapter 2). Inside a circle, which is not convex from within, c is the whole rate of the
+/// translation. Of moving ground the velocity at the look is taken, and twice what it changes up to the
 /// step's end.
 
 #include <carom/contact/detection/body_contacts.h>
@@ -18,6 +19,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
+#include <carom/integrators/run/time_stepping.h>
 
 #include <map>
 #include <utility>
@@ -34,12 +36,13 @@ public:
     ConstraintKey key;   ///< of the pair
   };
 
-  /// Both must outlive it.
-  PassageSearch(const Assembly& assembly, const Detector& detector);
+  /// Assembly and detector must outlive it.
+  PassageSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options);
 
   /// The first passage on the way from one state to another. A pair may come as deep as an eighth of the
   /// radii of the largest circles in both, beyond its depth at the start; found is a depth up to half as much
-  /// more. Of things without a thickness (points, bare segments) 1e-9 m stands for it.
+  /// more. The outside of a box or a circle has no far side and counts with none. Of things without a
+  /// thickness (points, bare segments) a thousand times gap_rounding() stands for it, 1e-9 m by default.
   [[nodiscard]] Passage first(const State& start, const State& end);
 
 private:
@@ -49,6 +52,8 @@ private:
   [[nodiscard]] std::map<FeatureKey, double>::const_iterator outline(const FeatureKey& key) const;
   [[nodiscard]] Pair pair_of(const Constraint& contact) const;
   [[nodiscard]] double allowed(const Constraint& contact) const;
+  [[nodiscard]] bool is_hollow(const Constraint& contact) const;
+  [[nodiscard]] double approach_along(const Constraint& contact, int i) const;
   [[nodiscard]] double approach(const Constraint& contact) const;
   [[nodiscard]] double most_approach(const State& start, const State& end);
   void look(const State& start, double share);
@@ -57,7 +62,9 @@ private:
 
   ContactLook look_;
   std::map<FeatureKey, double> thickness_;  // of outlines, by their first feature: a circle in them [m]
+  std::vector<FeatureKey> hollows_;         // insides of circles, by their first feature
   std::vector<double> reach_;               // by body, of vertices from its centre of mass [m]
+  double least_depth_;                      // stands for the thickness of what has none [m]
   double thinnest_ = 0.0;                   // depth that any pair may have [m]
   State at_;
   GroundPlaces places_at_end_;

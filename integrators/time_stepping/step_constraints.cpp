@@ -3,6 +3,7 @@
 #include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/impact_restitution.h>
 #include <carom/core/numerics/fetch_ahead.h>
+#include <carom/integrators/time_stepping/gap_rounding.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 
 #include <algorithm>
@@ -12,10 +13,6 @@
 namespace carom {
 
 namespace {
-
-/// A body that was hit where a gap closed, or moved out of the ground, stands on it to rounding: on either
-/// side of it [m].
-constexpr double rounding = 1e-12;
 
 /// True if bodies stand on the ground to rounding where contact lasts.
 bool ends_at_rounding(const TimeStepping& options) {
@@ -54,7 +51,8 @@ void share_restitution(std::span<const StepIsland> islands, const StepInput& in,
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
     : detector_(assembly),
       rules_{options.capture_speed,
-             ends_at_rounding(options) ? rounding : 0.0,
+             gap_rounding(options),
+             ends_at_rounding(options) ? gap_rounding(options) : 0.0,
              options.project_gaps && options.impacts != ImpactTimes::located,
              options.impacts == ImpactTimes::located,
              sticks(detector_),
@@ -62,12 +60,13 @@ StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& o
              is_plain(detector_)},
       islands_(assembly) {
   // A body at rest has its static friction: without the contact that rounding opens it would slide away.
-  if (options.project_gaps || rules_.sticks) rules_.margin = rounding;
+  if (options.project_gaps || rules_.sticks) rules_.margin = rules_.rounding;
 }
 
 void StepConstraints::allow_rounding(double step) {
-  rules_.margin = rounding;
-  rules_.slowest = rounding / step;
+  rules_.margin = rules_.rounding;
+  // Where positions are known roughly only, impacts rebound all the same.
+  rules_.slowest = std::min(rules_.rounding / step, rules_.capture_speed);
 }
 
 void StepConstraints::place_surfaces(const StepInput& in) {
@@ -123,7 +122,7 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
 /// wrong.
 bool StepConstraints::is_left_out(const StepInput& in, const Constraint& constraint) const {
   constexpr double noise = 1e-12;  // of the velocities along a normal
-  if (constraint.has_dry_friction() || constraint.gap < -rounding) return false;
+  if (constraint.has_dry_friction() || constraint.gap < -rules_.rounding) return false;
   const double* const v = in.start.v.data();
   const double rate = constraint.velocity(0, v);
   if (!(rate > std::max(noise * constraint.speed(0, v), rules_.slowest))) return false;
@@ -152,7 +151,8 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
     const auto friction = static_cast<std::ptrdiff_t>(out.size());
     detector_.joints().find_friction(components.begin, start, trial.at_start, out);
     // Impulses over the step, also where it is repeated.
-    std::for_each(out.begin() + friction, out.end(), [&](Constraint& at) { at.friction_bound *= in.step; });
+    std::for_each(out.begin() + friction, out.end(),
+                  [&](Constraint& at) { at.of_joint.friction_bound *= in.step; });
   }
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);

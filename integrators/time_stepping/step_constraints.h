@@ -92,6 +92,7 @@ private:
   Detector detector_;
   struct Rules {
     double capture_speed;
+    double rounding;                  // gap_rounding() [m]
     double slack;                     // opening of lasting contacts that is none [m]
     bool keeps_pressed;               // contacts with an impulse in the step before last
     bool drifts;                      // contacts of two bodies need their drifts

@@ -225,6 +225,54 @@ void run_on(const Outline& set, bool on_half_plane) {
   Simulation(system, TimeStepping{}).step();
 }
 
+/// A shape whose points are not those of its outline.
+struct Contradiction {
+  static constexpr Role role = Role::shape;
+  static constexpr int dimension = 2;
+  static constexpr std::string_view label = "contradiction";
+  using Kind = generic::FeatureShapeKind<Contradiction>;
+
+  BodyId body{};
+  Outline set{};
+  std::vector<RoundedPoint> points{};
+  MaterialId material{};
+
+  void check(const PartCheck&) const {}
+  void features(std::vector<RoundedPoint>& out) const { out.insert(out.end(), points.begin(), points.end()); }
+  Outline outline(const PartCheck&) const { return set; }
+};
+
+// It would lie on half-planes at one height and on all other ground at another one.
+TEST(OwnShape, PointsThatContradictTheOutlineAreRefused) {
+  const Outline square{{{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}}, 0.02};
+  const auto run = [&](const std::vector<RoundedPoint>& points) {
+    System system;
+    system.set_default_law(Surface{.friction = 0.3, .normal_restitution = 0.0});
+    system.add(HalfPlane{.normal = {0.0, 1.0}});
+    for (const double x : {0.0, 1.0}) {
+      const BodyId body = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {x, 0.3}});
+      system.add(Contradiction{.body = body, .set = square, .points = points}, x == 0.0 ? "stone" : "");
+    }
+    Simulation(system, TimeStepping{}).step();
+  };
+  std::vector<RoundedPoint> points;
+  for (const Vec<2>& corner : square.vertices) points.push_back({{corner[0], corner[1], 0.0}, square.radius});
+  EXPECT_NO_THROW(run(points));
+  EXPECT_NO_THROW(run({}));  // it touches no half-planes
+  const auto expect_refused = [&](const std::vector<RoundedPoint>& told) {
+    EXPECT_MODEL_ERROR(run(told), "contradiction 'stone': points that touch", "its outline",
+                       "points and an outline of the same set");
+  };
+  expect_refused({points[0], points[1], points[2]});
+  std::vector<RoundedPoint> more = points, moved = points, sharp = points;
+  more.push_back({{0.0, 0.15, 0.0}, 0.0});
+  moved[2].centre[0] += 1e-3;
+  for (RoundedPoint& point : sharp) point.radius = 0.0;
+  expect_refused(more);
+  expect_refused(moved);
+  expect_refused(sharp);
+}
+
 TEST(OwnShape, WhatIsNoConvexSetIsRefused) {
   const std::vector<Vec<2>> square{{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}};
   const auto expect_refused = [](const Outline& set, const char* value, const char* allowed) {

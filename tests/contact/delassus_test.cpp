@@ -298,7 +298,7 @@ TEST(Delassus, FrictionBound) {
   friction.add_body(0, 0, 2);
   friction.row(0)[0] = 1.0;
   friction.friction = 1.0;
-  friction.friction_bound = 3.0;
+  friction.of_joint.friction_bound = 3.0;
   MassResponse masses(assembly);
   SolverChain chain;
   IslandProblem problem;

@@ -61,7 +61,7 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   EXPECT_TRUE(contact.has_dry_friction());
   EXPECT_EQ(contact.type, ConstraintType::joint_friction);
   EXPECT_EQ(contact.rows, 1);
-  EXPECT_EQ(contact.friction_bound, 0.5);
+  EXPECT_EQ(contact.of_joint.friction_bound, 0.5);
   EXPECT_EQ(contact.law.sticking_friction(), 1.5);
   EXPECT_EQ(contact.gap, 0.0);
   EXPECT_EQ(detector.name(contact.key), wheel.system.name(friction));

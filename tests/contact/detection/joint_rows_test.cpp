@@ -14,6 +14,8 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 
+// Angles of the flap count times its radius of gyration, 0.289 m, up to a power of two.
+constexpr double arm = 0.5;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A flap on a pin with two limits and friction, and a free ball.
@@ -57,21 +59,44 @@ TEST(JointRows, LimitsAreFoundWithinTheMargin) {
   };
   EXPECT_TRUE(found(0.0).empty());
   EXPECT_EQ(found(infinity).size(), 2U);
-  const std::vector<Constraint> near = found(0.2);
+  const std::vector<Constraint> near = found(0.2 * arm);
   ASSERT_EQ(near.size(), 1U);
   EXPECT_EQ(near[0].type, ConstraintType::limit);
   EXPECT_EQ(near[0].key.a, (FeatureKey{FeatureKey::Owner::joint, flap.stop.serial, 1}));
   EXPECT_EQ(near[0].key.a, near[0].key.b);
   EXPECT_EQ(near[0].rows, 1);
-  EXPECT_NEAR(near[0].gap, 0.1, 1e-15);
+  EXPECT_NEAR(near[0].gap, 0.1 * arm, 1e-15);
+  EXPECT_DOUBLE_EQ(near[0].of_joint.length, arm);
   EXPECT_EQ(near[0].restitution(0), 0.25);
-  EXPECT_DOUBLE_EQ(near[0].velocity(0, model.state.v.data()), -2.0);
+  EXPECT_DOUBLE_EQ(near[0].velocity(0, model.state.v.data()), -2.0 * arm);
   EXPECT_EQ(near[0].body(), model.assembly.layout()->index(flap.flap));
 
   std::vector<Constraint> none_of_it;
   rows.find_limits(component_of(model.assembly, flap.ball),
                    {model.state.view(), model.evaluation, places, nullptr, infinity, nullptr}, none_of_it);
   EXPECT_TRUE(none_of_it.empty());
+}
+
+// Of the angle between two bodies the arm is that of the smallest change of velocities that makes a rate of
+// 1 rad/s; a coordinate that is a length stays one, levers and all.
+TEST(JointRows, AnglesCountTimesAnArm) {
+  System system;
+  const BodyId one = system.add(RigidBody{.mass = {.mass = 1.0, .inertia = 0.09}});
+  const BodyId two = system.add(RigidBody{.mass = {.mass = 4.0, .inertia = 0.64}, .position = {1.0, 0.0}});
+  const BodyId slider = system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {2.0, 1.0}});
+  const JointId pin = system.add(Revolute{.from = one, .to = {two, {-1.0, 0.0}}});
+  const JointId slide = system.add(Prismatic{.from = two, .to = slider, .axis = {1.0, 0.0}});
+  for (const JointId joint : {pin, slide}) system.add(JointFriction{.joint = joint, .bound = 2.0});
+  const carom_test::PlacedModel model(system);
+  const JointRows rows(model.assembly);
+  std::vector<Constraint> out;
+  rows.find_friction(0, model.state.view(), model.evaluation, out);
+  ASSERT_EQ(out.size(), 2U);
+  constexpr double between = 0.25;  // of 0.3 m and 0.4 m: 1/|(1/0.3, 1/0.4)| is 0.24 m
+  EXPECT_EQ(out[0].of_joint.length, between);
+  EXPECT_EQ(out[0].of_joint.friction_bound, 2.0 / between);
+  EXPECT_EQ(out[1].of_joint.length, 1.0);
+  EXPECT_EQ(out[1].of_joint.friction_bound, 2.0);
 }
 
 TEST(JointRows, FrictionIsARowAlongTheCoordinate) {
@@ -86,9 +111,9 @@ TEST(JointRows, FrictionIsARowAlongTheCoordinate) {
   rows.find_friction(component, model.state.view(), model.evaluation, out);
   ASSERT_EQ(out.size(), 1U);
   EXPECT_EQ(out[0].type, ConstraintType::joint_friction);
-  EXPECT_EQ(out[0].friction_bound, 0.5);
+  EXPECT_DOUBLE_EQ(out[0].of_joint.friction_bound, 0.5 / arm);
   EXPECT_EQ(out[0].law.sticking_friction(), 1.5);
-  EXPECT_DOUBLE_EQ(out[0].velocity(0, model.state.v.data()), 2.0);
+  EXPECT_DOUBLE_EQ(out[0].velocity(0, model.state.v.data()), 2.0 * arm);
   Constraint moved = out[0];
   moved.jacobian = {};
   rows.update_friction({model.state.view(), model.evaluation.rotation.data()}, moved);

@@ -140,6 +140,36 @@ TEST(EventUnits, APendulumHitsABlock) {
   expect_same(scene, 1e-8);
 }
 
+// Rates of hinges went by rad/s where speeds of contacts went by m/s: whether friction in them stops at once,
+// which of two impacts is the faster, how long what is slow may take to come back.
+TEST(EventUnits, AChainWithLimitsAndFrictionFallsOnDiscs) {
+  const auto scene = [](const Units& units) {
+    System system;
+    system.add(units.gravity());
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.4});
+    system.add(HalfPlane{.normal = {0.0, 1.0}});
+    units.add_disc(system, 1.2, 0.1, {0.3, 0.1}, {0.0, 0.0}, 0.0);
+    units.add_disc(system, 0.6, 0.1, {0.62, 0.1}, {0.0, 0.0}, 0.0);
+    const double length = 0.4 * units.length;
+    Vec<2> pin(0.0, 0.5 * units.length);
+    BodyId before = ground;
+    for (int i = 0; i < 2; ++i) {
+      const BodyId link =
+          system.add(RigidBody{.mass = rod(units.mass, length), .position = pin + Vec<2>(0.5 * length, 0.0)});
+      const Vec<2> end(0.5 * length, 0.0);
+      system.add(Segment{.body = link, .from = -0.8 * end, .to = 0.8 * end, .radius = 0.03 * units.length});
+      const JointId hinge =
+          system.add(Revolute{.from = {before, before == ground ? pin : end}, .to = {link, -end}});
+      system.add(Stop{.joint = hinge, .lower = -0.5, .upper = 0.6, .restitution = 0.5});
+      system.add(JointFriction{.joint = hinge, .bound = 0.05 * units.mass * units.speed() * units.speed()});
+      pin[0] += length;
+      before = link;
+    }
+    return system;
+  };
+  expect_same(scene, 1e-6);  // some 100 impacts, each of which makes more of the tolerances
+}
+
 // The curvature of a user's ground shape is found by differences: a length that had been 1e-5 m for all of
 // them.
 TEST(EventUnits, ADiscSlidesDownARoundHill) {
@@ -223,6 +253,24 @@ TEST(EventUnits, BoxesInABox) {
 TEST(EventUnits, BoxesFarFromTheOrigin) {
   Simulation simulation(boxes_in_a_box({1.0, 1.0, 1.0}, 28, Vec<2>(1e6, 1e6)), EventDriven{});
   EXPECT_NO_THROW(simulation.run_until(0.5));
+}
+
+// Volumes that bodies sweep were those at rest: of two that fly side by side each was good for as long as it
+// takes to go through the space between them, so that a flight of 300 km took minutes.
+TEST(EventUnits, WhatFliesTogetherCostsNoMoreTheFasterItIs) {
+  for (const double speed : {0.0, 1e7}) {
+    System system;
+    system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
+    for (const double x : {0.0, 0.3}) {
+      add_box(system, 1.0, 0.2, 0.1, {x, 0.0}, 0.0, {speed + 0.5 * x, 0.0}, 5.0);
+    }
+    Simulation simulation(system, EventDriven{});
+    simulation.run_until(0.03);
+    // Places are known to 4e-11 m there.
+    const State& end = simulation.state();
+    EXPECT_NEAR(end.q[3] - end.q[0], 0.3 + 0.15 * 0.03, 1e-8) << speed;
+    EXPECT_DOUBLE_EQ(end.v[2], 5.0) << speed;
+  }
 }
 
 // Flights of up to 1 s are a thousand of these units: the bound of what a corner may do within one of them
