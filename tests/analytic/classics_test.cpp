@@ -158,8 +158,11 @@ TEST(Classics, FollowerLeavesItsCamAndMeetsItAgain) {
   simulation.run_until(cam.landing() + 1e-3);
   ASSERT_EQ(simulation.statistics().events[static_cast<std::size_t>(EventKind::lift_off)], 1);
   for (const EventRecord& event : simulation.events()) {
-    if (event.kind == EventKind::lift_off) EXPECT_NEAR(event.time, cam.jump(), by_events);
-    if (event.kind == EventKind::impact) EXPECT_NEAR(event.time, cam.landing(), by_events);
+    if (event.kind == EventKind::lift_off) {
+      EXPECT_NEAR(event.time, cam.jump(), by_events);
+    } else if (event.kind == EventKind::impact) {
+      EXPECT_NEAR(event.time, cam.landing(), by_events);
+    }
   }
   // Steps of 1e-5 s of second order: (w h)^2 = 1.4e-6 of the flight, which is 0.04 s long.
   Simulation stepped(cam.system(), located(1e-5));
@@ -297,7 +300,9 @@ TEST(Classics, ClutchLocksFlywheels) {
     Simulation simulation(system, mode);
     simulation.run_until(0.6);
     for (const EventRecord& event : simulation.events()) {
-      if (event.kind == EventKind::stick) EXPECT_NEAR(event.time, locked, by_events);
+      if (event.kind == EventKind::stick) {
+        EXPECT_NEAR(event.time, locked, by_events);
+      }
     }
     for (const BodyId body : {one, two}) EXPECT_NEAR(simulation.state().spin(body), w, 1e-11);
     EXPECT_NEAR(simulation.energy().flow(EnergyFlow::joint_friction),
@@ -357,7 +362,9 @@ TEST(Classics, StickSlipHasItsPeriod) {
   int periods = 0;
   for (const EventRecord& event : simulation.events()) {
     if (event.kind == EventKind::slip) {
-      if (stuck > 0.0) EXPECT_NEAR(event.time - stuck, sticks, by_events);
+      if (stuck > 0.0) {
+        EXPECT_NEAR(event.time - stuck, sticks, by_events);
+      }
       slipped = event.time;
     } else if (event.kind == EventKind::stick) {
       EXPECT_NEAR(event.time - slipped, slides, by_events);
