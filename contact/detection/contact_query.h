@@ -18,6 +18,12 @@ struct ContactQuery {
   const GroundPlaces* after = nullptr;       ///< at the end of the step; null where no time passes
   double margin = 0.0;                       ///< largest gap [m]
   const LastingContacts* lasting = nullptr;  ///< found also where they are a little open; null: none
+
+  /// The end of the step, for a shape. \param shapes whose `places` these are
+  [[nodiscard]] GroundAtEnd end_of(const GroundShapes& shapes, Index shape) const {
+    if (after == nullptr) return {};
+    return {shapes.motion(shape, *after), after->time() - state.time};
+  }
 };
 
 }  // namespace carom

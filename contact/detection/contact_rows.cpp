@@ -49,7 +49,7 @@ void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& stat
 }
 
 void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion,
-                       const GroundMotion* after, Constraint& out) {
+                       const GroundAtEnd& step_end, Constraint& out) {
   // docs/method.md, section 1: C the centre of the feature, o the shape's point, w its spin, r = C - o.
   const Vec<2> n = Eigen::Map<const Vec<2>>(out.row(0)), t = Eigen::Map<const Vec<2>>(out.row(1));
   const Vec<2> r = at.centre - planar_part(motion.point), velocity = planar_part(motion.velocity);
@@ -64,15 +64,19 @@ void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const
       n.dot(acceleration) + 2.0 * w * t.dot(relative) + motion.angular_acceleration * along + w * w * above;
   out.drift[1] += -t.dot(acceleration) + 2.0 * w * n.dot(relative) +
                   motion.angular_acceleration * (above - radius) - w * w * along;
+  const GroundMotion* const after = step_end.motion;
   if (after == nullptr) return;
 
-  // The place that is touched goes with the shape: its arm turns from the one angle to the other.
+  // The place that is touched goes with the shape, its arm turns from the one angle to the other; where the
+  // feature slides it is another place then, and the normal, which turns too, has a part of the sliding of
+  // the feature's centre.
+  const double step = step_end.step, slide = step * (t.dot(relative) + w * above);
   const std::array<double, 2> turn{after->cosine * motion.cosine + after->sine * motion.sine,
                                    after->sine * motion.cosine - after->cosine * motion.sine};
-  const Vec<2> end =
-      planar_part(after->velocity) +
-      Space<2>::lever_velocity(&after->spin, Space<2>::rotate(turn.data(), Vec<2>(r - radius * n)));
-  out.surface_velocity_after = {n.dot(end), t.dot(end), 0.0};
+  const Vec<2> arm = r - radius * n + slide * t;
+  const Vec<2> end = planar_part(after->velocity) +
+                     Space<2>::lever_velocity(&after->spin, Space<2>::rotate(turn.data(), arm));
+  out.surface_velocity_after = {n.dot(end) + w * (slide - step * w * radius), t.dot(end), 0.0};
 }
 
 std::array<double, 2> curvature_drift(const PlacedFeature<2>& at, const StateView& state,

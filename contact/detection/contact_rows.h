@@ -43,9 +43,9 @@ template <int D>
 template <int D>
 void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& state, Constraint& out);
 
-/// Adds the motion of the shape. \param after the motion at the end of the step; null where no time passes
+/// Adds the motion of the shape. \param step_end the shape at the end of the step
 void add_ground_motion(const PlacedFeature<2>& at, const StateView& state, const GroundMotion& motion,
-                       const GroundMotion* after, Constraint& out);
+                       const GroundAtEnd& step_end, Constraint& out);
 
 /// Share of the drift [m/s^2] by the curvature of a boundary that gap() describes, normal and tangential: the
 /// normal turns as the feature's centre moves along. By differences over 1e-5 m, or less where it is small.

@@ -282,23 +282,24 @@ void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, Shape
       }
       if (!query.lasting->lasts({feature.key, shapes_.key(shape)}, distance, turning)) continue;
     }
-    const GroundMotion* const after = query.after == nullptr ? nullptr : shapes_.motion(shape, *query.after);
+    GroundAtEnd end = query.end_of(shapes_, shape);
+    if (!shapes_.is_flat(shape)) end.step = 0.0;  // where it is touched then is not known
     Constraint& contact = next_of(out);
-    fill(at, shape, gap, query.state, motion, after, contact);
+    fill(at, shape, gap, query.state, motion, end, contact);
     if (!touches) contact.allowed_approach = distance / query.lasting->step();
   }
 }
 
 template <int D>
 void GroundContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
-                          const GroundMotion* motion, const GroundMotion* after, Constraint& out) const {
+                          const GroundMotion* motion, const GroundAtEnd& end, Constraint& out) const {
   if (at.centre.allFinite()) shapes_.demand_numbers(shape, gap, at.centre.data(), state.time);
   out.key = {at.feature.key, shapes_.key(shape)};
   out.law = laws_.law(at.feature.material, shape);
   out.friction = out.law.friction;
   fill_rows(at, gap, state, out);
   if constexpr (D == 2) {
-    if (motion != nullptr) add_ground_motion(at, state, *motion, after, out);
+    if (motion != nullptr) add_ground_motion(at, state, *motion, end, out);
     if (!shapes_.is_flat(shape)) {
       const std::array<double, 2> curved = curvature_drift(at, state, shapes_, shape, motion);
       out.drift[0] += curved[0];
@@ -321,7 +322,7 @@ void GroundContacts::contact(const ContactPair& pair, const StateView& state, co
   in_dimension(*assembly_, [&]<int D>(std::integral_constant<int, D>) {
     const PlacedFeature<D> at = place_feature<D>(body, feature, state, evaluation);
     const Gap gap = shapes_.gap(pair.ground_shape, motion, at.centre.data());
-    fill(at, pair.ground_shape, gap, state, motion, nullptr, out);
+    fill(at, pair.ground_shape, gap, state, motion, {}, out);
   });
 }
 

@@ -88,10 +88,10 @@ private:
   template <int D, class Out>
   void add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes, const ContactQuery& query,
            Out& out) const;
-  // Writes a contact. \param after motion of the shape at the end of the step; may be null
+  // Writes a contact. \param end the shape at the end of the step
   template <int D>
   void fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
-            const GroundMotion* motion, const GroundMotion* after, Constraint& out) const;
+            const GroundMotion* motion, const GroundAtEnd& end, Constraint& out) const;
   [[nodiscard]] Index material_of(const CentreRun& centres) const;
   template <class F>
   void for_runs(Range components, F&& f) const;

@@ -251,12 +251,15 @@ GapPoint GroundPieces::tracked(Index outline, const ConvexOutline& a, Index feat
 }
 
 void GroundPieces::fill_rows(Index outline, const PairSide& body, const GapPoint& at,
-                             const GroundMotion* motion, const GroundMotion* after, Constraint& out) const {
+                             const GroundMotion* motion, const GroundAtEnd& end, Constraint& out) const {
   const GroundOutline& of = outlines_[outline];
   const double radius = of.is_hollow() ? -of.radius : of.radius;
-  fill_pair_rows(body, motion == nullptr ? PairSide::at_rest(radius) : PairSide::of_motion(*motion, radius),
-                 at, out);
-  if (motion != nullptr && after != nullptr) add_motion_after(at, *motion, *after, out);
+  const PairSide ground =
+      motion == nullptr ? PairSide::at_rest(radius) : PairSide::of_motion(*motion, radius);
+  fill_pair_rows(body, ground, at, out);
+  if (motion != nullptr && end.motion != nullptr) {
+    add_motion_after(body, ground, at, *motion, *end.motion, end.step, out);
+  }
   out.surface_velocity[1] += of.surface_speed;
   out.surface_velocity_after[1] += of.surface_speed;
 }

@@ -91,10 +91,10 @@ public:
   /// depth, or out of the ground again, in front of another face of the shape.
   [[nodiscard]] bool is_out_behind(Index outline, double height, const Vec<2>& point) const;
   /// Writes the rows of a contact with an outline, as fill_pair_rows(), the velocity of a conveyor's surface
-  /// with them. \param at where the shape is now \param motion of its shape, null at rest \param after
-  /// likewise at the end of the step; null where no time passes
+  /// with them. \param at where the shape is now \param motion of its shape, null at rest \param end likewise
+  /// at the end of the step
   void fill_rows(Index outline, const PairSide& body, const GapPoint& at, const GroundMotion* motion,
-                 const GroundMotion* after, Constraint& out) const;
+                 const GroundAtEnd& end, Constraint& out) const;
 
 private:
   struct Piece {

@@ -29,6 +29,12 @@ private:
   std::vector<GroundMotion> motions_;  // of the shapes that move, in their order
 };
 
+/// A shape on ground at the end of a time step.
+struct GroundAtEnd {
+  const GroundMotion* motion = nullptr;  ///< null: the shape is at rest, or no time passes
+  double step = 0.0;                     ///< length of the step [s]
+};
+
 /// Shapes on ground, by number in the order in which they were added. Motions that it is asked with are null
 /// for shapes at rest.
 class CAROM_API GroundShapes {

@@ -129,15 +129,25 @@ void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Co
   out.drift = {n.dot(rate) - motion.turning * tangential, t.dot(rate) + motion.turning * normal, 0.0};
 }
 
-void add_motion_after(const GapPoint& at, const GroundMotion& now, const GroundMotion& after,
-                      Constraint& out) {
+void add_motion_after(const PairSide& a, const PairSide& b, const GapPoint& at, const GroundMotion& now,
+                      const GroundMotion& after, double step, Constraint& out) {
+  const Vec<2> t = Space<2>::tangent_frame(at.normal)[0], point = meeting_point(at);
+  const double approach = at.normal.dot(a.velocity_at(point) - b.velocity_at(point));
+  // What turns under a body that does not go with it is touched elsewhere then: a peg that spins is as high
+  // as it was, though each place of it goes down.
+  const ContactMotion motion = motion_of(a, b, at, approach);
+  const Vec<2> ground = b.velocity_at(point);
+  const double slide = t.dot(motion.point_rate - ground);
   const std::array<double, 2> turn{after.cosine * now.cosine + after.sine * now.sine,
                                    after.sine * now.cosine - after.cosine * now.sine};
-  const Vec<2> arm = meeting_point(at) - planar_part(now.point);
+  const Vec<2> arm = point - planar_part(now.point) + step * slide * t;
   const Vec<2> end =
       planar_part(after.velocity) + Space<2>::lever_velocity(&after.spin, Space<2>::rotate(turn.data(), arm));
-  const Vec<2> t = Space<2>::tangent_frame(at.normal)[0];
-  out.surface_velocity_after = {at.normal.dot(end), t.dot(end), 0.0};
+  // The normal turns too, with a face of the shape or with the line between two corners, and has a part of
+  // the sliding then. That an edge of the body turns is left to the body, as over ground at rest.
+  double along = 0.0;
+  if (at.kind != GapKind::edge_of_a) along = t.dot(a.velocity_at(at.point_a + a.radius * at.normal) - ground);
+  out.surface_velocity_after = {at.normal.dot(end) + step * motion.turning * along, t.dot(end), 0.0};
 }
 
 }  // namespace carom

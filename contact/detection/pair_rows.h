@@ -69,9 +69,12 @@ CAROM_API void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoi
 /// that moves.
 CAROM_API void fill_rows(const RowSide& a, const RowSide& b, const GapPoint& at, Constraint& out);
 
-/// Writes the surface velocity at the end of a time step, of the place that is touched now and goes with a
-/// shape on ground. \param now,after its motions
-CAROM_API void add_motion_after(const GapPoint& at, const GroundMotion& now, const GroundMotion& after,
+/// Writes the surface velocity at the end of a time step, of the place that is touched then: the one touched
+/// now, which goes with the shape on ground, and by how far the contact slides along that. Of a face of the
+/// shape, whose normal turns with it, also what that makes of the sliding. \param a the body, `b` the shape
+/// now \param after its motion at the end \param step length of the step [s]
+CAROM_API void add_motion_after(const PairSide& a, const PairSide& b, const GapPoint& at,
+                                const GroundMotion& now, const GroundMotion& after, double step,
                                 Constraint& out);
 
 /// Point at which both sides touch: midway between their surfaces [m].

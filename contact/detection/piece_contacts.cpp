@@ -155,10 +155,9 @@ void PieceContacts::add(const Search& search, Index on_ground, const GapPoint& g
                                  [&](const Constraint& other) { return other.key == key; });
   if (same != out.end() && same->gap <= gap.gap) return;
   const Index shape = pieces_.outlines()[on_ground].shape;
-  const GroundMotion* const after =
-      search.motion == nullptr || query.after == nullptr ? nullptr : shapes_.motion(shape, *query.after);
+  const GroundAtEnd end = search.motion == nullptr ? GroundAtEnd{} : query.end_of(shapes_, shape);
   Constraint contact;
-  fill(key, search.outline, on_ground, gap, query.state, search.motion, after, contact);
+  fill(key, search.outline, on_ground, gap, query.state, search.motion, end, contact);
   if (!touches) {
     if (!query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]))) return;
     contact.allowed_approach = gap.gap / query.lasting->step();
@@ -171,13 +170,13 @@ void PieceContacts::add(const Search& search, Index on_ground, const GapPoint& g
 }
 
 void PieceContacts::fill(const ConstraintKey& key, const BodyOutline& a, Index on_ground, const GapPoint& gap,
-                         const StateView& state, const GroundMotion* motion, const GroundMotion* after,
+                         const StateView& state, const GroundMotion* motion, const GroundAtEnd& end,
                          Constraint& out) const {
   const BodySlot& body = assembly_->layout()->bodies()[a.body];
   out.key = key;
   out.law = laws_[a.material * shapes_.size() + pieces_.outlines()[on_ground].shape];
   out.friction = out.law.friction;
-  pieces_.fill_rows(on_ground, PairSide::of_body(body, a.body, a.radius, state), gap, motion, after, out);
+  pieces_.fill_rows(on_ground, PairSide::of_body(body, a.body, a.radius, state), gap, motion, end, out);
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
 }
 
@@ -269,7 +268,7 @@ void PieceContacts::contact(const ContactPair& pair, const StateView& state, con
   const ConstraintKey key = pair.ground_outline != none ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
                                                         : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
   out = {};  // it may have held a contact of another body
-  fill(key, a, on_ground, gap, state, motion, nullptr, out);
+  fill(key, a, on_ground, gap, state, motion, {}, out);
 }
 
 void PieceContacts::follow(const ContactPair& pair, Index feature, const StateView& state,
@@ -278,8 +277,7 @@ void PieceContacts::follow(const ContactPair& pair, Index feature, const StateVi
   const auto [a, on_ground] = sides_of(pair);
   const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, motion), feature);
   const BodySlot& body = assembly_->layout()->bodies()[pair.body];
-  pieces_.fill_rows(on_ground, PairSide::of_body(body, pair.body, a.radius, state), gap, motion, nullptr,
-                    contact);
+  pieces_.fill_rows(on_ground, PairSide::of_body(body, pair.body, a.radius, state), gap, motion, {}, contact);
 }
 
 /// Each vertex of a body against each outline on ground; and, where the body has edges, each corner of the

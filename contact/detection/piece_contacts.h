@@ -90,7 +90,7 @@ private:
   void find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const;
   void add(const Search& search, Index ground, const GapPoint& gap, std::vector<Constraint>& out) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, Index ground, const GapPoint& gap,
-            const StateView& state, const GroundMotion* motion, const GroundMotion* after,
+            const StateView& state, const GroundMotion* motion, const GroundAtEnd& end,
             Constraint& out) const;
   [[nodiscard]] GapPoint gap_of(const ContactPair& pair, const OutlinePair& at, Index feature) const;
 

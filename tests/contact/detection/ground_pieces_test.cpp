@@ -210,7 +210,7 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
     const StateView state{t, now.data(), v.data(), nullptr};
     Constraint rows;
     ground.pieces.fill_rows(0, PairSide::of_body(slot, 0, local.radius, state), at,
-                            ground.shapes.motion(0, ground.places), nullptr, rows);
+                            ground.shapes.motion(0, ground.places), {}, rows);
     return rows;
   };
   const Constraint rows = rows_at(0);
