@@ -228,7 +228,7 @@ Equilibrium find_equilibrium(const Assembly& assembly, const State& start,
     force.key = support.at.key;
     force.name = model.constraints().name(support);
     const auto row = static_cast<Eigen::Index>(support.row);
-    force.normal = std::max(model.multiplier(row), 0.0);
+    force.normal = support.at.of_joint.length * std::max(model.multiplier(row), 0.0);  // a moment of a stop
     for (int i = 1; i < support.rows; ++i) {
       force.tangential[static_cast<std::size_t>(i - 1)] = model.multiplier(row + i);
     }

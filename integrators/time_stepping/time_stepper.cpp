@@ -133,25 +133,21 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
          turning_->turn(in, parts_.trial, islands, balance_.result().tally.worst_residual)) {
     ++passes_;
     try {
-      advance_anew(in);
+      advance_all(in);
     } catch (const SolverError&) {
       turning_->give_up(islands);
-      advance_anew(in);
+      advance_all(in);
       break;
     }
   }
   return balance_.finish(in);  // works of what acted, records
 }
 
-/// Forgets what was booked of the step.
-void TimeStepper::advance_anew(const StepInput& in) {
+/// Of all islands, from the start of the step.
+void TimeStepper::advance_all(const StepInput& in) {
   balance_.begin(in);
   capped_.begin();
   memory_.iterations.clear();
-  advance_all(in);
-}
-
-void TimeStepper::advance_all(const StepInput& in) {
   projection_.begin();
   if (impacts_ != nullptr && struck_) balance_.add(impacts_->result());
   for (const StepIsland& island : parts_.constraints.islands()) advance(island, in);
@@ -159,9 +155,6 @@ void TimeStepper::advance_all(const StepInput& in) {
 
 /// Motions that are given, and rotations at the start.
 void TimeStepper::prepare(const StepInput& in) {
-  balance_.begin(in);
-  capped_.begin();
-  memory_.iterations.clear();
   prescribed_.demand_continuous(in.start.time, in.end_time);
   parts_.constraints.place_surfaces(in);
   if (parts_.trial.needs.start_rotations) {

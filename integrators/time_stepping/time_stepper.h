@@ -70,7 +70,6 @@ private:
   void give_up(const StepInput& in, Companion& companion);
   void prepare(const StepInput& in);
   void advance_all(const StepInput& in);
-  void advance_anew(const StepInput& in);
   void advance(const StepIsland& island, const StepInput& in);
   void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
   void advance_under_constant_loads(const StepIsland& island, const StepInput& in);

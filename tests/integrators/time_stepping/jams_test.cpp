@@ -112,7 +112,7 @@ TEST(Jams, WhereDirectionsThatTurnPressTheBody) {
     std::uint64_t seed;
     int bodies;
   };
-  for (const Scene& scene : {Scene{7000140, 1}, Scene{30000164, 2}, Scene{30000170, 2}, Scene{30000010, 4}}) {
+  for (const Scene& scene : {Scene{7000140, 1}, Scene{30000164, 2}, Scene{30000222, 2}, Scene{30000041, 4}}) {
     SCOPED_TRACE(scene.seed);
     Simulation simulation(trough(scene.seed, scene.bodies),
                           TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located});
