@@ -81,10 +81,12 @@ bool LocatedMotion::move(const LocatedBody& at) {
     for (const FlightClosing& contact : closing) closed_.push_back(contact.key);
     const double hit = closing.front().share;
     if (hit > now) {
-      flight.constraints = of_flight_.begin;  // they may have turned on the longer way
-      for (Constraint& contact : flight.constraints) contact.shorten((hit - now) / (1.0 - now));
+      // It begins with contacts as they have turned on the longer way, which is nearly its own.
+      for (std::vector<Constraint>* const list : {&flight.constraints, &of_flight_.begin}) {
+        for (Constraint& contact : *list) contact.shorten((hit - now) / (1.0 - now));
+      }
       flight.end = hit;
-      if (!fly(at, flight)) return false;
+      if (!fly_and_turn(at, flight)) return false;
     } else {
       --used_;
     }
@@ -119,11 +121,16 @@ MotionPhase& LocatedMotion::add_phase(const LocatedBody& at, double begin, doubl
 /// The body, at the begin of the flight, comes to its end. Where contacts turn on the way their impulses act
 /// along the directions halfway, and the law holds along those at both ends: as joints are held.
 bool LocatedMotion::fly(const LocatedBody& at, MotionPhase& flight) {
+  of_flight_.begin = flight.constraints;
+  return fly_and_turn(at, flight);
+}
+
+/// Likewise with contacts that may have turned already; at the begin they are as `of_flight_.begin` has them.
+bool LocatedMotion::fly_and_turn(const LocatedBody& at, MotionPhase& flight) {
   constexpr int most_tries = 20;
   constexpr double rounding = 1e-15;
-  of_flight_.begin = flight.constraints;
   flight.turning_work = 0.0;
-  if (!fly_once(at, flight)) return false;
+  if (!fly_once(at, flight)) return fly_along_begin(at, flight);
   if (std::none_of(of_flight_.begin.begin(), of_flight_.begin.end(),
                    [](const Constraint& contact) { return contact.turns(); })) {
     return true;

@@ -53,6 +53,7 @@ private:
   MotionPhase& add_phase(const LocatedBody& at, double begin, double end);
   [[nodiscard]] bool fly(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool strike(const LocatedBody& at, double share, bool fast);
+  [[nodiscard]] bool fly_and_turn(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool fly_along_begin(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool fly_once(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool solve(const LocatedBody& at, MotionPhase& phase);
