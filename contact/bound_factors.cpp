@@ -48,9 +48,7 @@ bool BoundFactors::list_slots(std::span<const ImpulseDirection> directions, cons
       continue;
     }
     if (masses.layout == BodyMasses::Layout::spatial_points) return false;
-    const bool turns = masses.layout == BodyMasses::Layout::planar_bodies;
-    const double inverse = 1.0 / *masses.mass;
-    slots_[slot].inverse_mass = {inverse, inverse, turns ? 1.0 / *masses.inertia : 0.0};
+    slots_[slot].inverse_mass = inverse_masses(masses);
   }
   return true;
 }
@@ -67,9 +65,13 @@ void BoundFactors::write_rows(std::span<const ImpulseDirection> directions, Resp
   for (std::size_t r = 0; r < directions.size(); ++r) {
     const Constraint& at = *directions[r].constraint;
     ResponseFactors::Row& row = factors.rows[r];
-    row.slot.fill(ResponseFactors::no_slot);
-    for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b)
-      row.slot[b] = static_cast<int>(slot_from(at.blocks[b].v));
+    if (r > 0 && directions[r - 1].constraint == &at) {
+      row.slot = factors.rows[r - 1].slot;
+    } else {
+      row.slot.fill(ResponseFactors::no_slot);
+      for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b)
+        row.slot[b] = static_cast<int>(slot_from(at.blocks[b].v));
+    }
     write_factor_row(at, at.row(directions[r].row), row);
   }
 }

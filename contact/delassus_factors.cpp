@@ -12,10 +12,8 @@ int Delassus::add_slot(const Constraint::Block& block, const BodyResponse& respo
     return ResponseFactors::no_slot;
   }
   if (block.body >= slot_of_body_.size()) slot_of_body_.resize(block.body + 1, ResponseFactors::no_slot);
-  const bool turns = masses.layout == BodyMasses::Layout::planar_bodies;
   const int slot = slot_of_body_[block.body] = static_cast<int>(slots_.size());
-  const double inverse = 1.0 / *masses.mass;
-  slots_.push_back({block, {inverse, inverse, turns ? 1.0 / *masses.inertia : 0.0}});
+  slots_.push_back({block, inverse_masses(masses)});
   return slot;
 }
 

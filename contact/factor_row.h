@@ -7,7 +7,9 @@
 #include <carom/contact/delassus.h>
 #include <carom/contact/solvers/response_factors.h>
 #include <carom/core/constraint.h>
+#include <carom/core/dynamics/body_response.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -26,6 +28,13 @@ inline void write_factor_row(const Constraint& at, const double* h, ResponseFact
     if (turns) to[2] = h[2];
     h += turns ? 3 : 2;
   }
+}
+
+/// Inverse masses of a body of the plane, that of its spin 0 where it does not turn.
+[[nodiscard]] inline std::array<double, 3> inverse_masses(const BodyMasses& of) {
+  const double inverse = 1.0 / *of.mass;
+  const bool turns = of.layout == BodyMasses::Layout::planar_bodies;
+  return {inverse, inverse, turns ? 1.0 / *of.inertia : 0.0};
 }
 
 /// Writes inverse masses of bodies, slot by slot.

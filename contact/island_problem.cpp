@@ -39,9 +39,6 @@ void share_modes(std::span<const Constraint> constraints, std::span<const Contac
   }
 }
 
-/// Rows up to which W is made in full: half a gigabyte, of which solvers need several times as much.
-constexpr int most_dense_rows = 8192;
-
 void demand_room(std::size_t constraints, int rows) {
   if (rows <= most_dense_rows) return;
   constexpr double gigabyte = 1e9;

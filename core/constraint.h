@@ -79,9 +79,9 @@ struct Constraint {
   /// Numbers of a limit of a joint, and of friction in one.
   struct OfJoint {
     double friction_bound = 0.0;  ///< of friction: `friction` times it is the largest force, or impulse [N]
-    /// What the coordinate is multiplied by, so that all rows have lengths: 1 where it is one; else an arm
-    /// [m], with which velocities along the row are those of places on bodies. The moment of a force along
-    /// the row is the force times it.
+    /// Factor of the coordinate, so that all rows have lengths: 1 where it is one; else an arm [m], with
+    /// which velocities along the row are those of places on bodies. The moment of a force along the row is
+    /// the force times it.
     double length = 1.0;
   };
 

@@ -133,8 +133,8 @@ void add_motion_after(const PairSide& a, const PairSide& b, const GapPoint& at, 
                       const GroundMotion& after, double step, Constraint& out) {
   const Vec<2> t = Space<2>::tangent_frame(at.normal)[0], point = meeting_point(at);
   const double approach = at.normal.dot(a.velocity_at(point) - b.velocity_at(point));
-  // What turns under a body that does not go with it is touched elsewhere then: a peg that spins is as high
-  // as it was, though each place of it goes down.
+  // A shape that turns under a body, which does not go with it, is touched elsewhere then: a peg that spins
+  // is as high as it was, though each place of it goes down.
   const ContactMotion motion = motion_of(a, b, at, approach);
   const Vec<2> ground = b.velocity_at(point);
   const double slide = t.dot(motion.point_rate - ground);

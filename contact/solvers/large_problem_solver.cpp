@@ -14,11 +14,8 @@ namespace carom {
 namespace {
 
 /// Residual that sweeps aim at where exact solvers would have been the choice, were there fewer contacts.
-/// What rests stays where it is, to the rounding of places.
+/// Bodies at rest stay where they are, to the rounding of places.
 constexpr double exact_aim = 1e-14;
-
-/// Rows up to which W is made in full, at last: half a gigabyte.
-constexpr int most_dense_rows = 8192;
 
 /// True of a single body, and of bodies that answer together.
 bool demands_exact(const ContactProblem& problem) {

@@ -95,14 +95,9 @@ void push_bound(const OddGroup& odd, const std::array<double, 2>& impulse, SlotV
 }  // namespace
 
 void push(const OddGroup& odd, const std::array<double, 2>& impulse, SlotVelocity* velocity) {
-  const auto is_bound = [&](std::size_t i) {
-    const std::vector<char>& bound = odd.factors->bound.slots;
-    const auto slot = static_cast<std::size_t>(odd.slot[i]);
-    return slot < bound.size() && bound[slot] != 0;
-  };
   if (odd.factors != nullptr) push_bound(odd, impulse, velocity);
   for (std::size_t i = 0; i < odd.slot.size(); ++i) {
-    if (odd.factors != nullptr && is_bound(i)) continue;
+    if (odd.factors != nullptr && odd.factors->is_bound(static_cast<std::size_t>(odd.slot[i]))) continue;
     SlotVelocity& u = velocity[odd.slot[i]];
     for (std::size_t k = 0; k < columns; ++k) {
       u.v[k] += odd.h[0][columns * i + k] * impulse[0] + odd.h[1][columns * i + k] * impulse[1];

@@ -54,8 +54,10 @@ struct CAROM_API ResponseFactors {
   void resize_rows(int row_count);
   /// True if some slots answer together.
   [[nodiscard]] bool any_bound() const { return !bound.slots.empty(); }
-  /// True of a slot that answers with others.
-  [[nodiscard]] bool is_bound(std::size_t slot) const { return any_bound() && bound.slots[slot] != 0; }
+  /// True of a slot that answers with others; false of numbers beyond the slots.
+  [[nodiscard]] bool is_bound(std::size_t slot) const {
+    return slot < bound.slots.size() && bound.slots[slot] != 0;
+  }
   /// Answers of bound slots to an impulse along a row.
   [[nodiscard]] std::span<const Answer> answers(std::size_t row) const {
     if (!any_bound()) return {};

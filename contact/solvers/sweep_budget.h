@@ -8,6 +8,8 @@ namespace carom {
 /// Contacts of a problem in factors up to which exact solvers are asked where sweeps do not end: W in full, a
 /// few milliseconds.
 inline constexpr int most_exact_contacts = 50;
+/// Rows up to which W is made in full: half a gigabyte, of which solvers need several times as much.
+inline constexpr int most_dense_rows = 8192;
 
 /// Options of the sweeps over a problem in factors (nonlinear_cg_solver.h).
 struct SweepBudget {

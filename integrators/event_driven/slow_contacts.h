@@ -29,9 +29,9 @@ public:
   /// Projects away the normal velocities and gaps of contacts, and the sliding of those in the mode `stick`.
   /// Books the energy as that of accumulations. False if some do not close, or only where bodies would move
   /// by more than EventInstant::longest_shift() and than their gaps tell, or change their velocities by more
-  /// than what is stopped tells; the state is as before then. \param
-  /// contacts brought up to date \param at brought to the state, and is so again \param others pairs that are
-  /// closed with them once they touch and approach: what stops one contact may push another
+  /// than what is stopped tells; the state is as before then. \param contacts brought up to date \param at
+  /// brought to the state, and is so again \param others pairs that are closed with them once they touch and
+  /// approach: what stops one contact may push another
   [[nodiscard]] bool close(std::vector<ActiveContact>& contacts, std::span<const Index> others,
                            EventInstant& at);
 

@@ -48,7 +48,7 @@ PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector,
   displacement_.resize(at_.v.size());
   const auto add_all = [&](const BodyOutlines& outlines) {
     for (const BodyOutline& outline : outlines.list()) {
-      add(outline.key, circle_in(outlines.described(outline)));
+      add(outline.key, {circle_in(outlines.described(outline)), false});
       // Only the vertices turn: the radius around them is the same on all sides.
       reach_[outline.body] = std::max(reach_[outline.body], outline.reach - outline.radius);
     }
@@ -59,27 +59,28 @@ PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector,
     const GroundPieces& pieces = detector.pieces().pieces();
     for (Index i = 0; i < pieces.outlines().size(); ++i) {
       const GroundOutline& of = pieces.outlines()[i];
-      add(of.key, circle_in(pieces, i));
-      if (of.is_hollow()) hollows_.push_back(of.key);
+      add(of.key, {circle_in(pieces, i), of.is_hollow()});
     }
   }
   set_thinnest();
 }
 
-void PassageSearch::add(const FeatureKey& key, double thickness) { thickness_.emplace(key, thickness); }
+void PassageSearch::add(const FeatureKey& key, const Thickness& thickness) {
+  thickness_.emplace(key, thickness);
+}
 
 /// Less than any pair may come deep: twice the thinnest of bodies, or that and the thinnest ground.
 void PassageSearch::set_thinnest() {
   double body = infinite, any = infinite;
   for (const auto& [key, thickness] : thickness_) {
-    any = std::min(any, thickness);
-    if (key.owner != FeatureKey::Owner::obstacle) body = std::min(body, thickness);
+    any = std::min(any, thickness.circle);
+    if (key.owner != FeatureKey::Owner::obstacle) body = std::min(body, thickness.circle);
   }
   thinnest_ = std::max(least_depth_, deep * (body + any));
 }
 
 /// The outline that a feature is of; the end where it is one without pieces (half-planes).
-std::map<FeatureKey, double>::const_iterator PassageSearch::outline(const FeatureKey& key) const {
+PassageSearch::Thicknesses::const_iterator PassageSearch::outline(const FeatureKey& key) const {
   const auto behind = thickness_.upper_bound(key);
   if (behind == thickness_.begin()) return thickness_.end();
   const auto found = std::prev(behind);
@@ -96,13 +97,7 @@ double PassageSearch::allowed(const Constraint& contact) const {
   if (contact.type != ConstraintType::contact) return infinite;
   const auto a = outline(contact.key.a), b = outline(contact.key.b);
   if (a == thickness_.end() || b == thickness_.end()) return infinite;
-  return std::max(least_depth_, deep * (a->second + b->second));
-}
-
-/// True of a contact with the inside of a circle.
-bool PassageSearch::is_hollow(const Constraint& contact) const {
-  return std::any_of(hollows_.begin(), hollows_.end(),
-                     [&](const FeatureKey& hollow) { return outline(contact.key.b)->first == hollow; });
+  return std::max(least_depth_, deep * (a->second.circle + b->second.circle));
 }
 
 /// How much nearer the pair of a contact may come along a row over a whole step, but for turning [m].
@@ -124,7 +119,7 @@ double PassageSearch::approach_along(const Constraint& contact, int i) const {
 /// what is inside a circle comes nearer to it by going along it, too.
 double PassageSearch::approach(const Constraint& contact) const {
   double sum = approach_along(contact, 0);
-  if (is_hollow(contact)) sum = std::hypot(sum, approach_along(contact, 1));
+  if (outline(contact.key.b)->second.is_hollow) sum = std::hypot(sum, approach_along(contact, 1));
   for (int b = 0; b < contact.bodies; ++b) {
     const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
     constexpr int turning = 3;

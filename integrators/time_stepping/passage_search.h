@@ -47,12 +47,16 @@ public:
 
 private:
   using Pair = std::pair<FeatureKey, FeatureKey>;  // first features of two outlines
-  void add(const FeatureKey& key, double thickness);
+  struct Thickness {
+    double circle;   // radius of a circle in it [m]
+    bool is_hollow;  // the inside of a circle
+  };
+  using Thicknesses = std::map<FeatureKey, Thickness>;  // of outlines, by their first feature
+  void add(const FeatureKey& key, const Thickness& thickness);
   void set_thinnest();
-  [[nodiscard]] std::map<FeatureKey, double>::const_iterator outline(const FeatureKey& key) const;
+  [[nodiscard]] Thicknesses::const_iterator outline(const FeatureKey& key) const;
   [[nodiscard]] Pair pair_of(const Constraint& contact) const;
   [[nodiscard]] double allowed(const Constraint& contact) const;
-  [[nodiscard]] bool is_hollow(const Constraint& contact) const;
   [[nodiscard]] double approach_along(const Constraint& contact, int i) const;
   [[nodiscard]] double approach(const Constraint& contact) const;
   [[nodiscard]] double most_approach(const State& start, const State& end);
@@ -61,11 +65,10 @@ private:
   [[nodiscard]] double depth_at_start(const Constraint& contact) const;
 
   ContactLook look_;
-  std::map<FeatureKey, double> thickness_;  // of outlines, by their first feature: a circle in them [m]
-  std::vector<FeatureKey> hollows_;         // insides of circles, by their first feature
-  std::vector<double> reach_;               // by body, of vertices from its centre of mass [m]
-  double least_depth_;                      // stands for the thickness of what has none [m]
-  double thinnest_ = 0.0;                   // depth that any pair may have [m]
+  Thicknesses thickness_;
+  std::vector<double> reach_;  // by body, of vertices from its centre of mass [m]
+  double least_depth_;         // stands for the thickness of what has none [m]
+  double thinnest_ = 0.0;      // depth that any pair may have [m]
   State at_;
   GroundPlaces places_at_end_;
   std::vector<Constraint> contacts_;
