@@ -204,8 +204,9 @@ TEST(Classics, DominoesThatComeToLieDoNotStopTheWave) {
   EXPECT_LT(simulation.energy().flow(EnergyFlow::accumulation), 1e-7);
 }
 
-// What a peg turns under is as high after a second as before, though each place of the peg goes down: it
-// sank by R w^2 h t, 0.2 m. What is left is of third order in w h = 0.02, (w h)^3 R per radian of the turn.
+// A plate under which a peg turns is as high after a second as before, though each place of the peg goes
+// down: it sank by R w^2 h t, 0.2 m. What is left is of third order in w h = 0.02, (w h)^3 R per radian of
+// the turn.
 TEST(Classics, NothingSinksOnAPegThatSpins) {
   constexpr double spin = 20.0, radius = 0.5;
   for (const TimeStepping& mode : {TimeStepping{.step = 1e-3}, located(1e-3)}) {

@@ -1,5 +1,6 @@
 // Contacts of bodies that joints bind, left in factors, against the same with W as a matrix.
 
+#include "tests/contact/random_constraints.h"
 #include "tests/random.h"
 
 #include <carom/carom.h>
@@ -12,7 +13,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace {
@@ -62,7 +65,7 @@ protected:
       before_.push_back(random.uniform(-1.0, 1.0));
       free_.push_back(random.uniform(-1.0, 1.0));
     }
-    // What is held fast could not be answered else.
+    // A link that is held fast could not be answered else.
     for (std::vector<double>* const velocity : {&before_, &free_})
       joints_[0].project(JointLevel::change, velocity->data());
   }
@@ -72,19 +75,11 @@ protected:
     Random random(seed);
     std::vector<Constraint> made;
     for (int i = 0; i < count; ++i) {
-      Constraint& one = made.emplace_back();
-      one.rows = i % 7 == 6 ? 1 : 2;
-      one.type = one.rows == 1 ? ConstraintType::limit : ConstraintType::contact;
-      one.friction = 0.1;
-      one.law = {.friction = 0.1, .normal_restitution = 0.3, .tangential_restitution = 0.3};
       const auto first = static_cast<Index>(i % (chain + others));
-      for (Index b = 0; b < static_cast<Index>(1 + i % 2); ++b) {
-        const BodySlot& slot = assembly_.layout()->bodies()[b == 0 ? first : (first + 5) % (chain + others)];
-        one.add_body(b == 0 ? first : (first + 5) % (chain + others), slot.v, static_cast<int>(slot.v_size));
-      }
-      for (int row = 0; row < one.rows; ++row) {
-        for (int c = 0; c < one.columns(); ++c) one.row(row)[c] = random.uniform(-1.0, 1.0);
-      }
+      const std::array<Index, 2> touched{first, (first + 5) % (chain + others)};
+      const auto some = static_cast<std::size_t>(1 + i % 2);
+      made.push_back(carom_test::random_constraint(assembly_, i % 7 == 6 ? 1 : 2,
+                                                   std::span(touched).first(some), random));
     }
     const double of_pin[2][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, -0.5}};
     for (int row = 0; row < 2; ++row) std::copy_n(of_pin[row], 3, made[0].row(row));

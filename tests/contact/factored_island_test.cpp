@@ -1,5 +1,6 @@
 // An island in factors against the same constraints with W as a matrix: W, b, the answer, the way back.
 
+#include "tests/contact/random_constraints.h"
 #include "tests/random.h"
 
 #include <carom/carom.h>
@@ -53,19 +54,12 @@ protected:
     Random random(seed);
     std::vector<Constraint> made;
     for (int i = 0; i < count; ++i) {
-      Constraint& one = made.emplace_back();
-      one.rows = i % 7 == 6 ? 1 : 2;
-      one.type = one.rows == 1 ? ConstraintType::limit : ConstraintType::contact;
-      one.friction = 0.1;
-      one.law = {.friction = 0.1, .normal_restitution = 0.3, .tangential_restitution = 0.2};
-      for (int b = 0; b < (one.rows == 1 ? 3 : 1 + i % 2); ++b) {
-        const auto body = static_cast<Index>((i + b) % body_count);
-        const BodySlot& slot = assembly_.layout()->bodies()[body];
-        one.add_body(body, slot.v, static_cast<int>(slot.v_size));
-      }
-      for (int row = 0; row < one.rows; ++row) {
-        for (int c = 0; c < one.columns(); ++c) one.row(row)[c] = random.uniform(-1.0, 1.0);
-      }
+      const int rows = i % 7 == 6 ? 1 : 2;
+      std::vector<Index> touched;
+      for (int b = 0; b < (rows == 1 ? 3 : 1 + i % 2); ++b)
+        touched.push_back(static_cast<Index>((i + b) % body_count));
+      Constraint& one = made.emplace_back(carom_test::random_constraint(assembly_, rows, touched, random));
+      one.law.tangential_restitution = 0.2;
       one.surface_velocity_after[0] = 0.01;
     }
     return made;

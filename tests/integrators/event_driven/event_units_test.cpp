@@ -3,6 +3,7 @@
 // seconds but its options, so that the numbers are the same ones scaled.
 
 #include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/integrators/units.h"
 #include "tests/round_hill.h"
 
 #include <carom/carom.h>
@@ -20,47 +21,33 @@
 namespace {
 
 using namespace body_scenes;
+using carom_test::Units;
 
-/// Units, in m, kg and s.
-struct Units {
-  double length, mass, time;
+/// Options by default, in units.
+EventDriven options_in(const Units& units) {
+  EventDriven options;
+  options.absolute_tolerance *= units.length;
+  options.gap_tolerance *= units.length;
+  options.capture_speed *= units.speed();
+  options.interval *= units.time;
+  options.longest_step *= units.time;
+  options.event_limit /= units.time;
+  options.step_limit /= units.time;
+  return options;
+}
 
-  [[nodiscard]] double speed() const { return length / time; }
-  [[nodiscard]] double acceleration() const { return speed() / time; }
-  [[nodiscard]] Gravity gravity() const { return Gravity{{0.0, -g * acceleration()}}; }
-  [[nodiscard]] EventDriven options() const {
-    EventDriven options;
-    options.absolute_tolerance *= length;
-    options.gap_tolerance *= length;
-    options.capture_speed *= speed();
-    options.interval *= time;
-    options.longest_step *= time;
-    options.event_limit /= time;
-    options.step_limit /= time;
-    return options;
-  }
-  BodyId add_disc(System& system, double m, double radius, const Vec<2>& place, const Vec<2>& velocity,
-                  double spin) const {
-    return body_scenes::add_disc(system, m * mass, radius * length, place * length, velocity * speed(),
-                                 spin / time);
-  }
-};
+Gravity gravity_in(const Units& units) { return Gravity{{0.0, -g * units.acceleration()}}; }
+
+BodyId add_disc(const Units& units, System& system, double m, double radius, const Vec<2>& place,
+                const Vec<2>& velocity, double spin) {
+  return body_scenes::add_disc(system, m * units.mass, radius * units.length, place * units.length,
+                               velocity * units.speed(), spin / units.time);
+}
 
 using Scene = std::function<System(const Units&)>;
 
-/// Places, angles, velocities and spins after some units of time, in the units.
 std::vector<double> end_of(const Scene& scene, const Units& units, double time = 1.5) {
-  const System system = scene(units);
-  Simulation simulation(system, units.options());
-  simulation.run_until(time * units.time);
-  std::vector<double> end;
-  for (const BodyId body : system.bodies()) {
-    const Vec<2> x = simulation.state().position(body) / units.length;
-    const Vec<2> v = simulation.state().velocity(body) / units.speed();
-    const double spin = simulation.state().spin(body) * units.time;
-    end.insert(end.end(), {x[0], x[1], simulation.state().angle(body), v[0], v[1], spin});
-  }
-  return end;
+  return carom_test::end_in(units, scene(units), options_in(units), time);
 }
 
 void expect_same(const Scene& scene, double tolerance) {
@@ -81,10 +68,10 @@ void expect_same(const Scene& scene, double tolerance) {
 TEST(EventUnits, ABouncingDisc) {
   const auto scene = [](const Units& units) {
     System system;
-    system.add(units.gravity());
+    system.add(gravity_in(units));
     system.set_default_law({.friction = 0.3, .normal_restitution = 0.7, .tangential_restitution = 0.2});
     system.add(HalfPlane{.normal = {0.0, 1.0}});
-    units.add_disc(system, 1.2, 0.1, {0.0, 1.0}, {1.0, 0.0}, -4.0);
+    add_disc(units, system, 1.2, 0.1, {0.0, 1.0}, {1.0, 0.0}, -4.0);
     return system;
   };
   expect_same(scene, 1e-12);  // rounding of four bounces
@@ -93,7 +80,7 @@ TEST(EventUnits, ABouncingDisc) {
 TEST(EventUnits, ATumblingBox) {
   const auto scene = [](const Units& units) {
     System system;
-    system.add(units.gravity());
+    system.add(gravity_in(units));
     system.set_default_law({.friction = 0.4, .normal_restitution = 0.3});
     system.add(HalfPlane{.normal = {0.0, 1.0}});
     const double width = 0.4 * units.length, height = 0.3 * units.length;
@@ -109,12 +96,12 @@ TEST(EventUnits, ATumblingBox) {
 TEST(EventUnits, DiscsOnASpringBetweenPlanes) {
   const auto scene = [](const Units& units) {
     System system;
-    system.add(units.gravity());
+    system.add(gravity_in(units));
     system.set_default_law({.friction = 0.4, .normal_restitution = 0.5});
     system.add(HalfPlane{.normal = {0.1, 1.0}});
     system.add(HalfPlane{.point = {units.length, 0.0}, .normal = {-1.0, 0.2}});
-    const BodyId lower = units.add_disc(system, 1.2, 0.1, {0.0, 0.5}, {1.0, 0.0}, -4.0);
-    const BodyId upper = units.add_disc(system, 0.7, 0.15, {0.05, 1.0}, {1.0, 0.0}, 3.0);
+    const BodyId lower = add_disc(units, system, 1.2, 0.1, {0.0, 0.5}, {1.0, 0.0}, -4.0);
+    const BodyId upper = add_disc(units, system, 0.7, 0.15, {0.05, 1.0}, {1.0, 0.0}, 3.0);
     system.add(SpringDamper{.from = lower,
                             .to = upper,
                             .stiffness = 300.0 * units.mass / (units.time * units.time),
@@ -128,10 +115,10 @@ TEST(EventUnits, DiscsOnASpringBetweenPlanes) {
 TEST(EventUnits, APendulumHitsABlock) {
   const auto scene = [](const Units& units) {
     System system;
-    system.add(units.gravity());
+    system.add(gravity_in(units));
     system.set_default_law({.friction = 0.3, .normal_restitution = 0.4});
     system.add(HalfPlane{.point = {0.0, -1.2 * units.length}, .normal = {0.0, 1.0}});
-    const BodyId bob = units.add_disc(system, 1.2, 0.1, {-1.0, 0.0}, {0.0, 0.0}, 0.0);
+    const BodyId bob = add_disc(units, system, 1.2, 0.1, {-1.0, 0.0}, {0.0, 0.0}, 0.0);
     add_box(system, units.mass, 0.2 * units.length, 0.4 * units.length, {0.25 * units.length, -units.length});
     const JointId pivot = system.add(Revolute{.from = ground, .to = {bob, {units.length, 0.0}}});
     system.add(JointFriction{.joint = pivot, .bound = 0.1 * units.mass * units.speed() * units.speed()});
@@ -145,11 +132,11 @@ TEST(EventUnits, APendulumHitsABlock) {
 TEST(EventUnits, AChainWithLimitsAndFrictionFallsOnDiscs) {
   const auto scene = [](const Units& units) {
     System system;
-    system.add(units.gravity());
+    system.add(gravity_in(units));
     system.set_default_law({.friction = 0.3, .normal_restitution = 0.4});
     system.add(HalfPlane{.normal = {0.0, 1.0}});
-    units.add_disc(system, 1.2, 0.1, {0.3, 0.1}, {0.0, 0.0}, 0.0);
-    units.add_disc(system, 0.6, 0.1, {0.62, 0.1}, {0.0, 0.0}, 0.0);
+    add_disc(units, system, 1.2, 0.1, {0.3, 0.1}, {0.0, 0.0}, 0.0);
+    add_disc(units, system, 0.6, 0.1, {0.62, 0.1}, {0.0, 0.0}, 0.0);
     const double length = 0.4 * units.length;
     Vec<2> pin(0.0, 0.5 * units.length);
     BodyId before = ground;
@@ -175,12 +162,12 @@ TEST(EventUnits, AChainWithLimitsAndFrictionFallsOnDiscs) {
 TEST(EventUnits, ADiscSlidesDownARoundHill) {
   const auto scene = [](const Units& units) {
     System system;
-    system.add(units.gravity());
+    system.add(gravity_in(units));
     system.set_default_law({.friction = 0.0, .normal_restitution = 0.0});
     system.add(carom_test::RoundHill{.centre = {0.0, -units.length}, .radius = units.length});
     constexpr double from_top = 0.1, apart = 1.1;
-    units.add_disc(system, 1.0, 0.1, {apart * std::sin(from_top), apart * std::cos(from_top) - 1.0},
-                   {0.0, 0.0}, 0.0);
+    add_disc(units, system, 1.0, 0.1, {apart * std::sin(from_top), apart * std::cos(from_top) - 1.0},
+             {0.0, 0.0}, 0.0);
     return system;
   };
   // Rounding over the differences: 2e-16 over 1e-5 m of 1e4 m. It leaves the hill.
@@ -192,12 +179,12 @@ TEST(EventUnits, ADiscSlidesDownARoundHill) {
 TEST(EventUnits, ADiscFallsBelowTerrain) {
   const auto scene = [](const Units& units) {
     System system;
-    system.add(units.gravity());
+    system.add(gravity_in(units));
     system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
     std::vector<Vec<2>> line{{-1.0, 0.0}, {0.0, 0.0}, {1.0, 0.0}};
     for (Vec<2>& place : line) place *= units.length;
     system.add(Terrain{.vertices = line, .depth = 0.3 * units.length});
-    units.add_disc(system, 1.0, 0.1, {0.1, -0.6}, {0.2, 0.0}, 1.0);
+    add_disc(units, system, 1.0, 0.1, {0.1, -0.6}, {0.2, 0.0}, 1.0);
     return system;
   };
   expect_same(scene, 1e-12);  // rounding of a flight
@@ -206,7 +193,7 @@ TEST(EventUnits, ADiscFallsBelowTerrain) {
 /// Four boxes, two of them rounded, that fall within a box.
 System boxes_in_a_box(const Units& units, std::uint32_t seed, const Vec<2>& origin) {
   System system;
-  system.add(units.gravity());
+  system.add(gravity_in(units));
   system.set_default_law({.friction = 0.3, .normal_restitution = 0.1});
   system.add(BoxInside{.lower = origin, .upper = origin + Vec<2>(units.length, units.length)});
   std::mt19937 random(seed);
@@ -278,13 +265,13 @@ TEST(EventUnits, WhatFliesTogetherCostsNoMoreTheFasterItIs) {
 TEST(EventUnits, ShortFlightsAreSearchedWithFewLooks) {
   for (const Units& units : {Units{1.0, 1.0, 1.0}, Units{1e-6, 1.0, 1e-3}, Units{1.0, 1.0, 1e-6}}) {
     System system;
-    system.add(units.gravity());
+    system.add(gravity_in(units));
     system.set_default_law({.friction = 0.3, .normal_restitution = 0.5});
     system.add(BoxInside{.lower = {0.0, 0.0}, .upper = {units.length, units.length}});
     system.add(Peg{.centre = {0.4 * units.length, 0.3 * units.length}, .radius = 0.05 * units.length});
     add_box(system, units.mass, 0.2 * units.length, 0.1 * units.length,
             {0.5 * units.length, 0.7 * units.length}, 0.3, {units.speed(), 0.0}, 5.0 / units.time);
-    EventDriven options = units.options();
+    EventDriven options = options_in(units);
     options.evaluation_limit = 10000;  // of one step or event; 40 corners and walls at 200 looks
     Simulation simulation(system, options);
     EXPECT_NO_THROW(simulation.run_until(2.0 * units.time)) << units.length << " m, " << units.time << " s";

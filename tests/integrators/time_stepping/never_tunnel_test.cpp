@@ -302,7 +302,8 @@ TEST(NeverTunnel, FastDiscsEndNoStepFarOutsideABoxOrACircle) {
     for (const int count : {1, 3, 9}) {
       for (const double speed : {3e2, 3e3, 3e4}) {
         for (const double e : {0.5, 1.0}) {
-          // What slides fast along the inside of a circle sinks into it in each part: there it is moved out.
+          // A disc that slides fast along the inside of a circle sinks into it in each part: there it is
+          // moved out.
           TimeStepping options = safe;
           options.project_gaps = !in_box;
           Simulation simulation(fast_discs(in_box, count, speed, e), options);

@@ -1,6 +1,8 @@
 // The same scene in other units. Where these are powers of two, numbers are the same ones scaled, to the last
 // bit: so a number of metres, or a speed that is compared with a rate of an angle, shows at once.
 
+#include "tests/integrators/units.h"
+
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
@@ -15,25 +17,21 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
+using carom_test::end_in;
+using carom_test::Units;
 
-/// Units, in m, kg and s.
-struct Units {
-  double length, mass, time;
-
-  [[nodiscard]] double speed() const { return length / time; }
-  [[nodiscard]] double force() const { return mass * speed() / time; }
-  [[nodiscard]] TimeStepping scaled(TimeStepping options) const {
-    options.step *= time;
-    options.tolerance *= length;
-    options.capture_speed *= speed();
-    if (options.control) {
-      options.control->tolerance *= length;
-      options.control->smallest *= time;
-      options.control->largest *= time;
-    }
-    return options;
+/// Options in units.
+TimeStepping scaled(TimeStepping options, const Units& units) {
+  options.step *= units.time;
+  options.tolerance *= units.length;
+  options.capture_speed *= units.speed();
+  if (options.control) {
+    options.control->tolerance *= units.length;
+    options.control->smallest *= units.time;
+    options.control->largest *= units.time;
   }
-};
+  return options;
+}
 
 /// Numbers of a scene.
 class Numbers {
@@ -115,27 +113,13 @@ System scene(Scene which, std::uint32_t seed, const Units& units) {
   return system;
 }
 
-/// Places, angles, velocities and spins at the end, in the units.
-std::vector<double> end_of(const System& system, const Mode& mode, const Units& units, double time) {
-  Simulation simulation(system, mode);
-  simulation.run_until(time * units.time);
-  std::vector<double> end;
-  for (const BodyId body : system.bodies()) {
-    const Vec<2> x = simulation.state().position(body) / units.length;
-    const Vec<2> v = simulation.state().velocity(body) / units.speed();
-    const double spin = simulation.state().spin(body) * units.time;
-    end.insert(end.end(), {x[0], x[1], simulation.state().angle(body), v[0], v[1], spin});
-  }
-  return end;
-}
-
 void expect_same(Scene which, const TimeStepping& options, double tolerance, const std::string& what) {
   for (std::uint32_t seed = 1; seed < 5; ++seed) {
     const Units usual{1.0, 1.0, 1.0};
-    const std::vector<double> expected = end_of(scene(which, seed, usual), options, usual, 0.6);
+    const std::vector<double> expected = end_in(usual, scene(which, seed, usual), options, 0.6);
     for (const Units& units :
          {Units{0x1p10, 1.0, 1.0}, Units{0x1p-20, 0x1p-40, 0x1p-10}, Units{0x1p13, 0x1p30, 0x1p6}}) {
-      const std::vector<double> end = end_of(scene(which, seed, units), units.scaled(options), units, 0.6);
+      const std::vector<double> end = end_in(units, scene(which, seed, units), scaled(options, units), 0.6);
       for (std::size_t i = 0; i < end.size(); ++i) {
         EXPECT_NEAR(end[i], expected[i], tolerance)
             << what << ", seed " << seed << ", " << i << ", in " << units.length << " m";
