@@ -13,15 +13,16 @@ packages=(
   libeigen3-dev libspdlog-dev libsundials-dev
   libgtest-dev libgmock-dev librapidcheck-dev nlohmann-json3-dev libbenchmark-dev libtbb-dev
   python3 python3-matplotlib
+  graphviz # a test draws with it
   dpkg-dev file # what cpack makes packages with
 )
 for argument in "$@"; do
   case "$argument" in
-    --docs) packages+=(doxygen graphviz) ;;
+    --docs) packages+=(doxygen) ;;
     --python) packages+=(python3-venv python3-dev) ;;
     --node) packages+=(nodejs npm) ;;
     --browser) packages+=(chromium chromium-driver fonts-dejavu-core) ;;
-    --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev libomp-dev git doxygen graphviz) ;;
+    --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev libomp-dev git doxygen) ;;
     *)
       echo "usage: $0 [--docs | --python | --node | --browser | --checks]" >&2
       exit 2
