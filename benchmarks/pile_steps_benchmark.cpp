@@ -3,7 +3,8 @@
 // Names: settled/<N> for N discs that have come to rest (3 s, 10,000 of them 4.5 s), with the residual of
 // contact by default, and settled_to_<residual>; collapse/<N> for the second half of their fall; pouring/<N>
 // for rows that fall one by one onto those that lie already, all but the last quarter; <name>_two_threads;
-// laden_tray/<N> for N discs in a row on a tray that a hinge holds, all of which answer together.
+// laden_tray/<N> for N discs in a row on a tray that a hinge holds, all of which answer together;
+// dominoes/<N> for N that fall, from when the first lie on each other: contacts almost depend on each other.
 // Counters: residual (the largest of the steps timed), contacts.
 
 #include <carom/carom.h>
@@ -105,6 +106,33 @@ void laden_tray(benchmark::State& state) {
   state.counters["contacts"] = static_cast<double>(simulation.report().contacts.size());
 }
 
+void dominoes(benchmark::State& state) {
+  using namespace carom::planar;
+  constexpr double height = 0.041, width = 0.0076, pitch = 0.0276, push = 4.0,
+                   from = 0.6;  // [m], [rad/s], [s]
+  carom::System system;
+  system.add(Gravity{{0.0, -scenes::discs_gravity}});
+  system.set_default_law({.friction = 0.2, .normal_restitution = 0.0, .tangential_restitution = 0.0});
+  system.add(HalfPlane{.normal = {0.0, 1.0}},
+             carom::Surface{.friction = 2.0, .normal_restitution = 0.0, .tangential_restitution = 0.0});
+  for (int i = 0; i < count_of(state); ++i) {
+    const double spin = i == 0 ? push : 0.0;  // about its lower corner
+    const carom::BodyId domino = system.add(RigidBody{.mass = box(0.01, width, height),
+                                                      .position = {i * pitch, 0.5 * height},
+                                                      .velocity = 0.5 * spin * carom::Vec<2>(height, width),
+                                                      .spin = -spin});
+    system.add(Polygon{.body = domino,
+                       .vertices = {{-0.5 * width, -0.5 * height},
+                                    {0.5 * width, -0.5 * height},
+                                    {0.5 * width, 0.5 * height},
+                                    {-0.5 * width, 0.5 * height}}});
+  }
+  carom::Simulation simulation(system, carom::TimeStepping{.step = 0.1 * step});
+  simulation.run_until(from);
+  for (auto _ : state) simulation.step();
+  state.counters["contacts"] = static_cast<double>(simulation.report().contacts.size());
+}
+
 // Steps go on in time: as many as are timed at rest, and of the collapse those of half a second.
 void sizes(benchmark::internal::Benchmark* of) {
   of->Arg(100)->Arg(500)->Arg(2000)->Arg(10000)->Iterations(500)->Unit(benchmark::kMillisecond);
@@ -114,6 +142,7 @@ BENCHMARK_CAPTURE(settled_to, 1e-8, 1e-8)->Apply(sizes);
 BENCHMARK_CAPTURE(settled_to, 1e-4, 1e-4)->Apply(sizes);
 BENCHMARK(collapse)->Apply(sizes);
 BENCHMARK(pouring)->Apply(sizes);
+BENCHMARK(dominoes)->Arg(20)->Iterations(2000)->Unit(benchmark::kMillisecond);
 BENCHMARK(laden_tray)->Arg(100)->Arg(500)->Arg(2000)->Iterations(100)->Unit(benchmark::kMillisecond);
 // The wall clock, as the processor time of both threads is the sum.
 BENCHMARK(settled)->Name("settled_one_thread")->Arg(2000)->Iterations(500)->UseRealTime();

@@ -53,8 +53,11 @@ void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> m
   const SolverId first = alone ? SolverId::single_contact : SolverId::principal_pivoting;
   // All solutions of one contact are known, but not where it has rolling resistance.
   const bool knows_all = alone && (problem.rows() <= 2 || problem.sets()[1].kind == SetKind::bounded_disc);
+  // An answer that came with the problem has been tried by sweeps and their polish. Where it is good enough,
+  // Lemke's method, which has to repeat its path then, finds hardly better ones at many times the cost.
+  const bool suffices = state.report.residual <= tolerated_residual;
   const bool done = (!knows_all && leave_open(problem, state)) || attempt(problem, first, state) ||
-                    attempt(problem, SolverId::lemke, state) ||
+                    suffices || attempt(problem, SolverId::lemke, state) ||
                     attempt(problem, SolverId::projection, state) || approach(problem, state);
   if (!done && !(state.report.residual <= tolerated_residual)) {
     attempt(problem, SolverId::enumeration, state);
@@ -129,7 +132,7 @@ bool ExactSolvers::attempt(const ContactProblem& problem, SolverId id, ExactAtte
 // a light one do that is too heavy for the digits there are: changes have to shrink.
 bool ExactSolvers::approach(const ContactProblem& problem, ExactAttempt& state) {
   constexpr double near = 1e-3, softest = 1e-5, hardest = 1e-8, harder = 0.5, shrinking = 0.5;
-  constexpr int most_problems = 30;
+  constexpr int most_problems = 30, most_failures = 2;
   if (!(state.report.residual <= near) || state.report.residual <= tolerated_residual) return false;
   const auto follows = [](const RowSet& set) {  // there may be no answer
     return set.kind == SetKind::proportional && set.coefficient != 0.0;
@@ -137,8 +140,13 @@ bool ExactSolvers::approach(const ContactProblem& problem, ExactAttempt& state) 
   if (std::ranges::any_of(problem.sets(), follows)) return false;
   anchor_.assign(state.impulse.begin(), state.impulse.end());
   double softness = softest, last = 0.0;
+  int failures = 0;  // in a row
   for (int i = 0; i < most_problems; ++i, softness = std::max(harder * softness, hardest)) {
-    if (!solve_near(problem, softness)) continue;
+    if (!solve_near(problem, softness)) {
+      if (++failures == most_failures) return false;
+      continue;
+    }
+    failures = 0;
     double change = 0.0;
     for (std::size_t row = 0; row < trial_.size(); ++row)
       change = std::max(change, std::abs(trial_[row] - anchor_[row]));

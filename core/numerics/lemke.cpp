@@ -12,8 +12,11 @@ namespace {
 
 constexpr std::size_t no_row = std::numeric_limits<std::size_t>::max();
 
-// Pivots between two rebuilds of the tableau in the careful pass.
+// Least number of pivots between two rebuilds of the tableau in the careful pass.
 constexpr int rebuild_interval = 4;
+
+// A column may miss its equations by this part of their largest terms before the tableau is made anew.
+constexpr double tableau_accuracy = 1e-14;
 
 // Pivots below this part of the largest one make a basis singular when it is solved anew.
 constexpr double basis_rank_tolerance = 1e-14;
@@ -145,30 +148,65 @@ std::size_t Lemke::blocking_row(std::size_t column) const {
   return best;
 }
 
+// Coefficients of a variable in the system  I w - M z - d z0 = q. \param stride between those of two rows
+void Lemke::write_column(std::size_t variable, std::size_t stride, double* out) const {
+  for (std::size_t i = 0; i < n_; ++i) {
+    out[i * stride] = variable < n_       ? (variable == i ? 1.0 : 0.0)
+                      : variable < 2 * n_ ? -scaled_.m[i * n_ + variable - n_]
+                                          : -scaled_.row_scale[i];
+  }
+}
+
 // Recomputes values and columns [first, last) of the tableau of the present basis from the problem's data:
-// solves B [value, tableau] = [q, N] with the columns of  I w - M z - d z0 = q. False, without a change, of a
-// singular basis.
+// solves B [value, tableau] = [q, N] with columns of the system. False, without a change, of a singular
+// basis.
 bool Lemke::rebuild_tableau(std::size_t first, std::size_t last) {
-  const auto fill_column = [&](std::size_t variable, std::size_t stride, double* out) {
-    for (std::size_t i = 0; i < n_; ++i) {
-      out[i * stride] = variable < n_       ? (variable == i ? 1.0 : 0.0)
-                        : variable < 2 * n_ ? -scaled_.m[i * n_ + variable - n_]
-                                            : -scaled_.row_scale[i];
-    }
-  };
   system_.resize(n_ * n_);
   rhs_.resize(n_);
   unknown_.resize(n_);
-  for (std::size_t j = 0; j < n_; ++j) fill_column(basic_[j], n_, system_.data() + j);
+  for (std::size_t j = 0; j < n_; ++j) write_column(basic_[j], n_, system_.data() + j);
   qr_.factor(system_, n_, n_, basis_rank_tolerance);
   if (qr_.rank() < n_) return false;
   qr_.solve(scaled_.q, value_);
   for (std::size_t j = first; j < last; ++j) {
-    fill_column(nonbasic_[j], 1, rhs_.data());
+    write_column(nonbasic_[j], 1, rhs_.data());
     qr_.solve(rhs_, unknown_);
     for (std::size_t i = 0; i < n_; ++i) entry(i, j) = -unknown_[i];
   }
   return true;
+}
+
+// Whether basic variables, by row of the tableau, solve the system with right hand sides a, to rounding.
+bool Lemke::solves_system(std::span<const double> basic, std::span<const double> a) {
+  unknown_.assign(n_, 0.0);
+  double z0 = 0.0, worst = 0.0, largest = 0.0;
+  for (std::size_t row = 0; row < n_; ++row) {
+    if (basic_[row] == 2 * n_) z0 = basic[row];
+    if (basic_[row] >= n_ && basic_[row] < 2 * n_) unknown_[basic_[row] - n_] = basic[row];
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double w = place_[i] < n_ ? basic[place_[i]] : 0.0, covering = scaled_.row_scale[i] * z0;
+    double sum = w - covering - a[i], terms = std::abs(w) + std::abs(covering) + std::abs(a[i]);
+    for (std::size_t j = 0; j < n_; ++j) {
+      const double term = scaled_.m[i * n_ + j] * unknown_[j];
+      sum -= term;
+      terms += std::abs(term);
+    }
+    worst = std::max(worst, std::abs(sum));
+    largest = std::max(largest, terms);
+  }
+  return worst <= tableau_accuracy * largest;
+}
+
+// Whether all that decides on the next pivot still is what the problem's data make it.
+bool Lemke::is_accurate(std::size_t column) {
+  if (!solves_system(value_, scaled_.q)) return false;
+  rhs_.resize(n_);
+  write_column(nonbasic_[column], 1, rhs_.data());
+  for (double& value : rhs_) value = -value;
+  entering_.resize(n_);
+  for (std::size_t i = 0; i < n_; ++i) entering_[i] = entry(i, column);
+  return solves_system(entering_, rhs_);
 }
 
 // Whether the ray at which a pass ended is one of the problem, to the last digits: all basic variables are
@@ -184,15 +222,19 @@ LcpStatus Lemke::run(bool rebuild, int most_pivots, int& pivots) {
   std::size_t row = first_row();
   if (row == no_row) return LcpStatus::solved;
   std::size_t column = n_;
+  int next_rebuild = rebuild_interval;
   for (int count = 1;; ++count) {
     const std::size_t leaving = basic_[row];
     pivot(row, column);
     ++pivots;
     if (leaving == 2 * n_) return LcpStatus::solved;
     if (count >= most_pivots) return LcpStatus::pivot_bound;
-    if (rebuild && count % rebuild_interval == 0) rebuild_tableau(0, n_ + 1);
     // The complement of what left enters.
     column = place_[leaving < n_ ? leaving + n_ : leaving - n_] - n_;
+    if (rebuild && count >= next_rebuild && !is_accurate(column)) {
+      rebuild_tableau(0, n_ + 1);
+      next_rebuild = count + rebuild_interval;
+    }
     row = blocking_row(column);
     if (row != no_row) continue;
     ray_ = column;

@@ -34,8 +34,8 @@ enum class LemkeRay : std::uint8_t {
 ///
 /// The solution is not read from the tableau but solved anew from the final basis and refined, so that it is
 /// as good as the basis. When the tableau's basis turns out wrong, a second pass rebuilds the tableau from
-/// the problem's data every few pivots. Finite for exact arithmetic, though some problems take 2^n
-/// pivots; contact problems take about n. Keeps its memory between calls.
+/// the problem's data where it no longer fits them. Finite for exact arithmetic, though some problems take
+/// 2^n pivots; contact problems take about n. Keeps its memory between calls.
 class CAROM_API Lemke {
 public:
   /// Writes z (size n). Statuses: solved (lcp_residual below lcp_accuracy), secondary_ray, pivot_bound,
@@ -49,7 +49,10 @@ private:
   void start();
   void scale(const Lcp& problem);
   void pivot(std::size_t row, std::size_t column);
+  void write_column(std::size_t variable, std::size_t stride, double* out) const;
   bool rebuild_tableau(std::size_t first, std::size_t last);
+  [[nodiscard]] bool solves_system(std::span<const double> basic, std::span<const double> a);
+  [[nodiscard]] bool is_accurate(std::size_t column);
   [[nodiscard]] bool confirms_ray();
   [[nodiscard]] std::size_t first_row() const;
   [[nodiscard]] std::size_t blocking_row(std::size_t column) const;
@@ -78,7 +81,7 @@ private:
   std::vector<double> tableau_, value_;
   std::vector<std::size_t> basic_, nonbasic_;  // variable in each row, in each column
   std::vector<std::size_t> place_;             // row of a basic variable, n + column of a nonbasic one
-  std::vector<double> system_, rhs_, unknown_, best_;
+  std::vector<double> system_, rhs_, unknown_, entering_, best_;
   std::vector<std::size_t> support_;
   RankRevealingQr qr_;
 };
