@@ -113,26 +113,27 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
     flight.speed = 0.0;
   });
   const double due = JoinableGroup(group).due();
+  const bool rests = !(due < never);
+  if (!is_free && !rests) JoinableGroup(group).sample(due, false, end);
+  for_flights([&](Index body, BodyFlight& flight) {
+    if (rests) flight.velocity = flight.acceleration = Vec<2>::Zero();  // but for rounding
+    if (is_free) return;
+    flight.speed = (flight.velocity - frame_).norm();  // of bodies at rest too, in a frame that goes on
+    if (rests) return;
+    constexpr double unseen = 2.0;
+    const Index v = assembly_->layout()->bodies()[body].v;
+    const Vec<2> later(end.state.v[v], end.state.v[v + 1]),
+        pull(end.acceleration[v], end.acceleration[v + 1]);
+    flight.speed = std::max(flight.speed, (later - frame_).norm()) +
+                   unseen * (due - time) * std::max(flight.acceleration.norm(), pull.norm());
+  });
   double horizon = due;
-  if (due < never) {
-    if (!is_free) {
-      JoinableGroup(group).sample(due, false, end);
-      for_flights([&](Index body, BodyFlight& flight) {
-        constexpr double unseen = 2.0;
-        const Index v = assembly_->layout()->bodies()[body].v;
-        const Vec<2> later(end.state.v[v], end.state.v[v + 1]),
-            pull(end.acceleration[v], end.acceleration[v + 1]);
-        flight.speed = std::max((flight.velocity - frame_).norm(), (later - frame_).norm()) +
-                       unseen * (due - time) * std::max(flight.acceleration.norm(), pull.norm());
-      });
-    }
-    for_flights([&](Index, const BodyFlight& flight) {
-      const double v = is_free ? (flight.velocity - frame_).norm() : flight.speed;
-      const double a = is_free ? flight.acceleration.norm() : 0.0;
-      const double length = 2.0 * travel_ / (v + std::sqrt(v * v + 2.0 * a * travel_));
-      if (time + length > time) horizon = std::min(horizon, time + length);
-    });
-  }
+  for_flights([&](Index, const BodyFlight& flight) {
+    const double v = is_free ? (flight.velocity - frame_).norm() : flight.speed;
+    const double a = is_free ? flight.acceleration.norm() : 0.0;
+    const double length = 2.0 * travel_ / (v + std::sqrt(v * v + 2.0 * a * travel_));
+    if (time + length > time) horizon = std::min(horizon, time + length);
+  });
   for_flights([&](Index body, const BodyFlight&) { sweep(body, horizon < never ? horizon - time : 0.0); });
   for (const MotionUnknowns::Part& part : motion.model().parts()) horizons_[part.component] = horizon;
   return horizon;

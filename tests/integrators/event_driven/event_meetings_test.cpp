@@ -49,6 +49,23 @@ TEST(EventMeetings, ABulletHitsAThinWall) {
   }
 }
 
+// Bodies that start side by side are searched for meetings in a frame that goes with them. A box that had
+// come to rest stayed where it was in that frame too, and the disc that rolls behind it went through it.
+TEST(EventMeetings, ABodyAtRestIsMetByOneThatStartedBesideIt) {
+  constexpr double speed = 3.0, friction = 0.5, half = 0.1, apart = 5.0;
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.set_default_law({.friction = friction, .normal_restitution = 0.0});
+  system.add(HalfPlane{.normal = {0.0, 1.0}});
+  add_disc(system, 1.0, half, {0.0, half}, {speed, 0.0}, -speed / half);
+  add_box(system, 1.0, 2.0 * half, 2.0 * half, {apart, half}, 0.0, {speed, 0.0});
+  Simulation simulation(system, EventDriven{});
+  simulation.run_until(2.5);
+  const double stops = apart + 0.5 * speed * speed / (friction * g);
+  // As exact as the time at which the box stops, by the tolerances.
+  EXPECT_NEAR(first_hit(simulation), (stops - 2.0 * half) / speed, 1e-8);
+}
+
 // Times of meetings are rounded, those of fast discs by more than what counts as touching: rounded down they
 // met again and again at one time, until event_limit ended the run; at 1e5 s at the first meeting.
 TEST(EventMeetings, FastDiscsMeetAtLateTimes) {
