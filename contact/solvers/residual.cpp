@@ -68,6 +68,24 @@ double distance(const ContactProblem& problem, const RowGroup& group, std::span<
   return worst;
 }
 
+// rho of the groups of a problem.
+class GroupSteps {
+public:
+  explicit GroupSteps(const ContactProblem& problem) : problem_(problem) {
+    const double largest = largest_trace(problem);
+    least_trace_ = largest * negligible_trace;
+    of_immovable_ = largest > 0.0 ? 1.0 / largest : 1.0;
+  }
+  [[nodiscard]] double of(const RowGroup& group) const {
+    const double own = group_trace(problem_, group);
+    return own > least_trace_ ? 1.0 / own : of_immovable_;
+  }
+
+private:
+  const ContactProblem& problem_;
+  double least_trace_, of_immovable_;
+};
+
 }  // namespace
 
 double largest_trace(const ContactProblem& problem) {
@@ -87,17 +105,14 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
                              problem.sets()[1].coefficient, impulse[0], impulse[1], xi[0], xi[1]}),
             0};
   }
-  const double largest_trace = carom::largest_trace(problem);
-  const double least_trace = largest_trace * negligible_trace;
-  const double rho_of_immovable = largest_trace > 0.0 ? 1.0 / largest_trace : 1.0;
+  const GroupSteps steps(problem);
 
   // A NaN anywhere makes P* or a distance infinite, or is caught by the comparison below.
   double scale = 0.0;
   Residual worst;
   for (std::size_t g = 0; g < problem.groups().size(); ++g) {
     const RowGroup& group = problem.groups()[g];
-    const double own = group_trace(problem, group);
-    const double rho = own > least_trace ? 1.0 / own : rho_of_immovable;
+    const double rho = steps.of(group);
     const auto first = static_cast<std::size_t>(group.first);
     double error = 0.0;
     if (is_planar_contact(problem, group)) {
@@ -116,6 +131,20 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
   if (scale == 0.0) return {0.0, worst.group};
   const double relative = worst.value / scale;
   return {std::isfinite(relative) && scale < infinity ? relative : infinity, worst.group};
+}
+
+double residual_of_velocities(const ContactProblem& problem, std::span<const double> impulse,
+                              std::span<const double> xi) {
+  const GroupSteps steps(problem);
+  double worst = 0.0, largest = 0.0;
+  for (const RowGroup& group : problem.groups()) {
+    const double rho = steps.of(group);
+    worst = larger_magnitude(worst, distance(problem, group, impulse, xi, rho) / rho);
+  }
+  for (const double velocity : problem.vector()) largest = larger_magnitude(largest, velocity);
+  if (worst == 0.0) return 0.0;
+  const double relative = worst / largest;
+  return std::isfinite(relative) ? relative : infinity;
 }
 
 }  // namespace carom

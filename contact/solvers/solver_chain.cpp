@@ -39,6 +39,8 @@ struct SolverChain::Workspace {
   bool begin(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   bool solve_regular(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   void take_at_cap(const ExactAttempt& attempt, ContactReport& report) const;
+  [[nodiscard]] bool is_nearly_solved(const ContactProblem& problem, std::span<const double> impulse,
+                                      const ContactReport& report) const;
   void sweep(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
   bool sweep_or_solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
 };
@@ -107,6 +109,15 @@ void SolverChain::Workspace::take_at_cap(const ExactAttempt& attempt, ContactRep
   if (!report.usable() && !attempt.proved_unsolvable) report.outcome = large.judged(report.residual);
 }
 
+// Farther off, few contacts may have no solution at all: that is an error. Bodies that jam, with velocities
+// that their contacts cannot all have but for their rounding or for what turning left, have none that is
+// nearer.
+bool SolverChain::Workspace::is_nearly_solved(const ContactProblem& problem, std::span<const double> impulse,
+                                              const ContactReport& report) const {
+  constexpr double nearly_solved = 1e-7, of_velocities = 1e-4;
+  return report.residual <= nearly_solved || residual_of_velocities(problem, impulse, xi) <= of_velocities;
+}
+
 SolverChain::SolverChain() : work_(std::make_unique<Workspace>()) {}
 SolverChain::~SolverChain() = default;
 SolverChain::SolverChain(SolverChain&&) noexcept = default;
@@ -132,9 +143,9 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
   if (!work.begin(problem, impulse, report)) return;
   ExactAttempt attempt{.impulse = impulse, .xi = work.xi, .report = report};
   work.exact.solve(problem, work.modes, attempt);
-  // Farther off, few contacts may have no solution at all: that is an error.
-  constexpr double nearly_solved = 1e-7;
-  if (work.capped && report.residual <= nearly_solved) work.take_at_cap(attempt, report);
+  if (work.capped && !report.usable() && work.is_nearly_solved(problem, impulse, report)) {
+    work.take_at_cap(attempt, report);
+  }
   count(report, attempt.best, attempt.applicable, work.statistics);
 }
 

@@ -1,5 +1,6 @@
 // Problem: which bodies are hit within a step.
 
+#include <carom/integrators/time_stepping/contact_stage.h>
 #include <carom/integrators/time_stepping/located_impacts.h>
 
 #include <algorithm>
@@ -30,7 +31,8 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
       on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
       most_impacts_(options.most_impacts),
       capture_speed_(options.capture_speed),
-      refuse_jams_(options.impact_rules.refuse_jams) {}
+      refuse_jams_(options.impact_rules.refuse_jams),
+      budget_(budget_of(options)) {}
 
 void LocatedImpacts::clear() {
   in_use_ = 0;
@@ -131,7 +133,7 @@ void LocatedImpacts::take_up(const StepInput& in, Index body, StepTrial& trial) 
     if (island_.contacts[contact].bodies > 1) return;
     island_.own.push_back(island_.contacts[contact]);
   }
-  if (in_use_ == motions_.size()) motions_.emplace_back();
+  if (in_use_ == motions_.size()) motions_.emplace_back().chain().set_budget(budget_);
   trial.expect_impulses();
   order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(at), {body, in_use_});
   const bool struck = std::any_of(island_.own.begin(), island_.own.end(), [&](const Constraint& contact) {

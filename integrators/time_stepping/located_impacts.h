@@ -84,6 +84,7 @@ private:
   int most_impacts_;
   double capture_speed_;
   bool refuse_jams_;
+  SweepBudget budget_;
   std::vector<LocatedMotion> motions_;
   std::size_t in_use_ = 0;
   std::vector<std::pair<Index, std::size_t>> order_;  // body, its motion; ascending
