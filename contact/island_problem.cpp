@@ -10,6 +10,7 @@
 #include <carom/contact/free_velocity.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/island_rows.h>
+#include <carom/contact/plastic_jams.h>
 #include <carom/contact/solvers/planar_certificate.h>
 #include <carom/core/errors.h>
 
@@ -83,27 +84,13 @@ void make_dense(std::vector<RowSet>& sets, ContactProblem& problem) {
   problem.group();
 }
 
-/// Takes the restitution from a problem. False if it had none.
-/// \param given part of b that is kept, of a problem in factors
-bool remove_restitution(std::span<const double> before, std::span<double> restitution,
-                        std::span<double> given, ContactProblem& problem) {
-  bool any = false;
-  for (std::size_t row = 0; row < before.size(); ++row) {
-    const double part = std::exchange(restitution[row], 0.0) * before[row];
-    any = any || part != 0.0;
-    const bool held = problem.diagonal(static_cast<int>(row)) == 0.0;
-    if (!held || problem.vector()[row] != 0.0) problem.vector()[row] -= part;
-    if (!given.empty()) given[row] -= part;
-  }
-  return any;
-}
-
 }  // namespace
 
 void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before,
                           BodyResponse* response, SweepStart start) {
   constraints_ = constraints;
-  answer_.known = answer_.changed_modes = jammed_ = false;
+  answer_.known = answer_.changed_modes = false;
+  jam_.begin();
   answer_.response.clear();
   if (constraints.size() != 1 || constraints[0].rows != 2 || !problem_.is_one_planar_contact()) {
     return build_any(velocity_before, response, start);
@@ -289,12 +276,11 @@ const ContactReport& IslandProblem::solve(SolverChain& chain) {
   } else {
     chain.solve(problem_, answer_);
   }
-  if (answer_.report.usable() && modes_.empty()) return answer_.report;  // nearly always
-  if (options_.plastic_jams && !answer_.report.usable() &&
-      remove_restitution(before_, restitution_, scratch_.given, problem_)) {
-    jammed_ = true;
-    forget_impulses();               // those of a jam have grown without bound
-    chain.solve(problem_, answer_);  // without restitution all laws are one
+  const bool alone = problem_.groups().size() == 1 && modes_.empty();
+  if (alone && answer_.report.usable()) return answer_.report;  // nearly always
+  if (options_.plastic_jams) {
+    jam_.resolve({problem_, before_, restitution_, scratch_.given, answer_}, impact_.solver == nullptr,
+                 chain);
   }
   if (!modes_.empty()) share_modes(constraints_, answer_.modes, modes_);
   return answer_.report;

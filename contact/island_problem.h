@@ -10,6 +10,7 @@
 #include <carom/contact/bound_factors.h>
 #include <carom/contact/delassus.h>
 #include <carom/contact/impulse_map.h>
+#include <carom/contact/plastic_jams.h>
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/impact_solver.h>
 #include <carom/contact/solvers/solver_chain.h>
@@ -38,11 +39,8 @@ struct IslandOptions {
   /// Constraints up to which it does so: few enough that the exact solvers go on where sweeps do not end, if
   /// answers have to be exact.
   std::size_t factored_to = std::numeric_limits<std::size_t>::max();
-  /// Contacts that jam and have no answer are solved with e = 0. Contacts jam where impulses P in their cones
-  /// cancel each other, H^T P = 0. Then P.b = P.(E gamma^-), over ground at rest; an answer demands that
-  /// it is not negative, and where e differ it may be. Without restitution it is 0, and there is an answer
-  /// (the matrix of the complementarity problem is copositive: Cottle, Pang and Stone 1992, theorem 3.8.6),
-  /// which adds no energy in an impact.
+  /// Contacts that jam, and have no answer or one that adds energy by impulses without measure, are solved
+  /// with e = 0 (plastic_jams.h).
   bool plastic_jams = false;
 };
 
@@ -76,7 +74,8 @@ public:
   /// Likewise from velocities to which the impulses at hand have led: they remain the answer if they are one.
   void set_velocity(const double* velocity);
   /// Solves; the answer before, if there is one since build(), is where solvers start from. Where no solver
-  /// has an answer and plastic jams are allowed, all e are 0 from here to the next build().
+  /// has an answer, or one of impulses without measure, and plastic jams are allowed, all e are 0 from here
+  /// to the next build().
   [[nodiscard]] const ContactReport& solve(SolverChain& chain);
   /// Replaces the answer, and its modes, by another solution of the problem.
   void set_impulses(std::span<const double> impulses);
@@ -100,7 +99,7 @@ public:
   /// True if the last answer has other modes than the one before it since build().
   [[nodiscard]] bool changed_modes() const { return answer_.changed_modes; }
   /// Factor of all e in the last answer: 1, or 0 of a plastic jam.
-  [[nodiscard]] double restitution_factor() const { return jammed_ ? 0.0 : 1.0; }
+  [[nodiscard]] double restitution_factor() const { return jam_.found() ? 0.0 : 1.0; }
   /// Report of the last answer.
   [[nodiscard]] const ContactReport& report() const { return answer_.report; }
   /// Place of row 0 of a constraint, the others behind it.
@@ -131,7 +130,7 @@ private:
   };
 
   IslandOptions options_;
-  bool jammed_ = false;  // since build()
+  PlasticJam jam_;
   std::span<const Constraint> constraints_;
   std::vector<ImpulseDirection> directions_;
   Delassus delassus_;
