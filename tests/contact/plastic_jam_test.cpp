@@ -102,6 +102,38 @@ TEST(PlasticJam, UnequalRestitutionHasNoAnswer) {
   EXPECT_EQ(problem.restitution_factor(), 1.0);
 }
 
+// The ceiling touches beside the floor, by delta: to have both velocities the body has to turn at
+// -(e_1 - e_2)/delta, at which it is shot round by 1/2 J w^2.
+TEST(PlasticJam, WhatOnlyImpulsesWithoutMeasureCanGiveIsNotGiven) {
+  constexpr double delta = 1e-5, spin = (0.5 - 0.2) / delta, inertia = 0.1;
+  std::vector<Touch> touches = corridor(0.5, 0.2);
+  touches[1].point = {delta, 0.0};
+  for (Touch& touch : touches) touch.law.friction = 0.0;
+  Jam jam(touches);
+  IslandProblem shot = jam.impact(falls, false);
+  EXPECT_TRUE(shot.solve(jam.chain).usable());
+  // What turns it is the billionth of W that does not cancel, which is known to 2e-7.
+  const double energy = 0.5 * inertia * spin * spin;
+  EXPECT_NEAR(jam.gain(shot, falls), energy, 1e-6 * energy);
+  IslandProblem stopped = jam.impact(falls, true);
+  EXPECT_TRUE(stopped.solve(jam.chain).usable());
+  EXPECT_EQ(stopped.restitution_factor(), 0.0);
+  EXPECT_LE(jam.gain(stopped, falls), 1e-12);  // rounding, as below
+}
+
+// Likewise farther apart: impulses of Newton's law that are no larger than this stay, and gains are told.
+TEST(PlasticJam, GainsOfTheLawStay) {
+  std::vector<Touch> touches = corridor(0.5, 0.2);
+  touches[1].point = {0.1, 0.0};
+  for (Touch& touch : touches) touch.law.friction = 0.0;
+  Jam jam(touches);
+  IslandProblem problem = jam.impact(falls, true);
+  EXPECT_TRUE(problem.solve(jam.chain).usable());
+  EXPECT_EQ(problem.restitution_factor(), 1.0);
+  EXPECT_GT(jam.gain(problem, falls), 0.0);
+  EXPECT_NEAR(problem.before()[0], -1.0, 1e-15);
+}
+
 TEST(PlasticJam, TheOtherWayRoundThereIsOne) {
   Jam jam(corridor(0.2, 0.5));
   IslandProblem problem = jam.impact(falls, true);

@@ -39,6 +39,29 @@ TEST(Residual, HalfLine) {
   EXPECT_EQ(judge(lone_row({}, 2.0, 3.0), {-1.5}), 1.0);  // pulls at the contact
 }
 
+// Impulses of 1000 N s that cancel each other hide an error of 5e-4 m/s from the residual, not from that of
+// velocities.
+TEST(Residual, OfVelocities) {
+  ContactProblem problem;
+  problem.reset(2);
+  for (const int row : {0, 1}) {
+    problem.w(row, row) = 1.0;
+    problem.w(row, 1 - row) = -1.0;
+    problem.vector()[static_cast<std::size_t>(row)] = row == 0 ? 2e-3 : -1e-3;  // none for which both are 0
+  }
+  problem.group();
+  const std::vector<double> impulse{1e3, 1e3 + 1.5e-3};
+  std::vector<double> xi(2);
+  problem.velocities(impulse, xi);
+  constexpr double rounding = 2e-13;  // of 1000 N s
+  EXPECT_NEAR(xi[0], 5e-4, rounding);
+  EXPECT_NEAR(xi[1], 5e-4, rounding);
+  EXPECT_NEAR(residual(problem, impulse, xi).value, 5e-7, 1e-12);
+  EXPECT_NEAR(residual_of_velocities(problem, impulse, xi), 5e-4 / 2e-3, rounding / 2e-3);
+  EXPECT_EQ(residual_of_velocities(lone_row({}, 2.0, -3.0), std::vector{1.5}, std::vector{0.0}), 0.0);
+  EXPECT_EQ(residual_of_velocities(lone_row({}, 2.0, 0.0), std::vector{1.0}, std::vector{2.0}), infinity);
+}
+
 TEST(Residual, FixedInterval) {
   const RowSet set{.kind = SetKind::interval, .lower = -1.0, .upper = 2.0};
   EXPECT_EQ(judge(lone_row(set, 1.0, 5.0), {-1.0}), 0.0);
