@@ -162,6 +162,7 @@ void EventBalance::book_without_normal(const SolvedImpact& impact, std::size_t c
   const double impulse = map.impulse(c, 0);
   const double work = sum.add(impulse, map.before(c, 0), at.tangential_velocity(impact.velocity));
   if (at.type != ConstraintType::rolling) {
+    sum.allow_for_joint_friction(impulse, map.before(c, 0));
     flows[EnergyFlow::joint_friction] -= work;
     return;
   }

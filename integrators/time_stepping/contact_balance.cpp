@@ -323,6 +323,7 @@ void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t 
   result_.flows[EnergyFlow::joint_friction] -= moment * mean_rate;
   sum.gain += moment * mean_rate;
   sum.scale += 2.0 * std::abs(moment) * std::max(std::abs(before), std::abs(mean_rate));
+  sum.allow_for_joint_friction(moment, before);
   result_.report.joint_impulses.push_back(
       {JointId{at.key.a.serial, assembly_->system().token()}, reaction, result_.report.time});
   const ContactMode mode = problem.modes()[contact];
