@@ -167,7 +167,7 @@ void EventBalance::book_without_normal(const SolvedImpact& impact, std::size_t c
     return;
   }
   EventRecord& event = fresh.back();
-  event.rolling_moment = impulse;
+  event.rolling_moment = at.of_joint.length * impulse;
   event.contact_work += work;
   flows[line_of_rolling(impact.kind)] -= work;
   flows[EnergyFlow::external] += impulse * at.surface_velocity[0];

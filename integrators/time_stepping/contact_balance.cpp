@@ -275,7 +275,7 @@ void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact
   const double moment = problem.impulses()[row];
   const double work = sum.add(moment, problem.before()[row], at.velocity_after(0, after));
   ContactRecord& entry = result_.records().back();
-  entry.rolling_moment = moment;
+  entry.rolling_moment = at.of_joint.length * moment;
   entry.contact_work += work;
   result_.flows[EnergyFlow::rolling] -= work;
   result_.flows[EnergyFlow::external] +=
