@@ -1,6 +1,6 @@
 // Rolling resistance in other units: its row is a spin, beside velocities of places. In micrometres moments
-// of rolling resistance were 1e-6 of the forces that answers of contact problems are judged by: the motion
-// was another one within a second, of discs that moved metres apart or of events that came to no end.
+// were 1e-6 of the forces that answers of contact problems are judged by, and the motion was another one: by
+// 1 of the units within a second.
 
 #include "tests/integrators/units.h"
 #include "tests/random.h"
