@@ -26,7 +26,8 @@ struct ActiveContact {
   double friction = 0.0;      ///< coefficient: sliding where it slips, static where it sticks
   /// Force; of friction in a joint Constraint::friction_bound; of rolling resistance that of its contact [N].
   double normal = 0.0;
-  /// Force; of friction in a joint along its coordinate [N, N m]; of rolling resistance the moment [N m].
+  /// Force; of friction in a joint along its coordinate; of rolling resistance the moment over its arm
+  /// (Constraint::OfJoint::length) [N].
   double tangential = 0.0;
   /// False where forces were shared out and it is at its end by chance: others set the margin.
   bool sets_margin = true;
@@ -35,8 +36,8 @@ struct ActiveContact {
   [[nodiscard]] bool sticks() const { return mode == ContactMode::stick; }
   /// True of rolling resistance.
   [[nodiscard]] bool rolls() const { return at.type == ConstraintType::rolling; }
-  /// Factor that makes a force of distances from the edge of friction: of moments against rolling too [1,
-  /// 1/m].
+  /// Factor that makes a normal force of distances from the edge of friction, for moments against rolling
+  /// too.
   [[nodiscard]] double margin_scale() const { return rolls() ? 1.0 / friction : 1.0; }
   /// Sign of the sliding velocity, 0 if it sticks.
   [[nodiscard]] double slip_sign() const {

@@ -32,7 +32,7 @@ double own_response(const ImpulseDirection& direction, const BodyResponse& respo
 }  // namespace
 
 double ActiveContact::friction_at(const Constraint& where, const double* velocities) const {
-  if (where.type == ConstraintType::rolling) return where.law.rolling_resistance;
+  if (where.type == ConstraintType::rolling) return where.law.rolling_resistance / where.of_joint.length;
   if (frictionless) return 0.0;
   if (sticks()) return where.law.sticking_friction();
   if (!where.law.falls_with_speed()) return where.law.friction;
@@ -126,7 +126,7 @@ int ActiveSet::row_of(const Row& row, const Constraint& at) { return row.tangent
 double ActiveSet::lever(std::size_t contact) const {
   if (contact + 1 >= contacts_.size() || !contacts_[contact + 1].rolls()) return 0.0;
   const ActiveContact& rolling = contacts_[contact + 1];
-  return -rolling.slip_sign() * rolling.friction;
+  return -rolling.slip_sign() * rolling.friction * rolling.at.of_joint.length;
 }
 
 /// Rows of one group, and the products of these with what forces along their columns do.

@@ -1,5 +1,7 @@
 #include <carom/contact/impact_restitution.h>
 
+#include <carom/contact/impulse_map.h>
+
 namespace carom {
 
 namespace {
@@ -7,7 +9,7 @@ namespace {
 // Where contact and friction move together (a mechanism of one degree of freedom), both mean velocities
 // vanish and every friction impulse within its bound leads to the same motion. A restitution that is
 // less by ten times what answers are certified to (1e-12) chooses the one against the rate after the impact.
-constexpr double chooses_rate_after = 1.0 - 1e-11;
+constexpr double chooses_rate_after = 1.0 - ImpulseWork::joint_restitution_lack;
 
 }  // namespace
 

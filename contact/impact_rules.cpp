@@ -51,6 +51,8 @@ ImpulseWork work_of_impact(const IslandProblem& problem) {
   for (const Constraint& constraint : problem.constraints()) {
     for (int i = 0; i < constraint.rows; ++i, ++row) {
       work.add(impulses[row], before[row], xi[row] - factor * constraint.restitution(i) * before[row]);
+      if (constraint.type == ConstraintType::joint_friction)
+        work.allow_for_joint_friction(impulses[row], before[row]);
     }
   }
   return work;
@@ -72,7 +74,7 @@ double limit_gain(const IslandProblem& problem, std::span<Constraint> constraint
     if (!solved) return false;
     // Well within rounding, for whoever adds up the works from other numbers.
     const ImpulseWork work = work_of_impact(problem);
-    return work.gain > 0.1 * ImpulseWork::rounding * work.scale;
+    return work.gain > 0.1 * work.tolerance();
   };
   int grid = factors - 1;
   while (grid > 0 && gains(static_cast<double>(grid) / factors)) --grid;

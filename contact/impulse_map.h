@@ -25,8 +25,13 @@ struct ImpulseWork {
   /// Rounding of the sum of works, against its scale: a gain above it is real.
   static constexpr double rounding = 1e-13;
 
-  double gain = 0.0;   ///< sum of works [J]
-  double scale = 0.0;  ///< sum of the magnitudes of its parts [J]
+  /// Friction in joints has the restitution of the contact less this part of it (impact_restitution.h): half
+  /// of that of |P gamma^-| is what its impulse may gain.
+  static constexpr double joint_restitution_lack = 1e-11;
+
+  double gain = 0.0;    ///< sum of works [J]
+  double scale = 0.0;   ///< sum of the magnitudes of its parts [J]
+  double lacked = 0.0;  ///< what friction in joints gains at most as its restitution is a little less [J]
 
   /// Adds an impulse; returns its work [J].
   double add(double impulse, double before, double after) {
@@ -35,8 +40,14 @@ struct ImpulseWork {
     scale += std::abs(impulse) * (std::abs(before) + std::abs(after));
     return work;
   }
-  /// True if energy is gained, not rounding.
-  [[nodiscard]] bool is_gain() const { return gain > rounding * scale; }
+  /// Allows for the restitution of friction in a joint. \param impulse,before as in add()
+  void allow_for_joint_friction(double impulse, double before) {
+    lacked += 0.5 * joint_restitution_lack * std::abs(impulse * before);
+  }
+  /// Largest sum that is no gain [J].
+  [[nodiscard]] double tolerance() const { return rounding * scale + lacked; }
+  /// True if energy is gained by the law.
+  [[nodiscard]] bool is_gain() const { return gain > tolerance(); }
 };
 
 /// One answer of one problem. A view: constraints, matrix and numbers must outlive it.

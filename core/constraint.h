@@ -76,7 +76,8 @@ struct Constraint {
     int columns = 0;    ///< its velocities
   };
 
-  /// Numbers of a limit of a joint, and of friction in one.
+  /// Numbers of a limit of a joint, and of friction in one; of rolling resistance, which is along a spin,
+  /// too.
   struct OfJoint {
     double friction_bound = 0.0;  ///< of friction: `friction` times it is the largest force, or impulse [N]
     /// Factor of the coordinate, so that all rows have lengths: 1 where it is one; else an arm [m], with
@@ -108,7 +109,7 @@ struct Constraint {
 
   ConstraintKey key;  ///< identity
   double gap = 0.0;   ///< negative where violated [m]
-  OfJoint of_joint;   ///< of a limit of a joint, and of friction in one
+  OfJoint of_joint;   ///< of a limit of a joint, of friction in one, of rolling resistance
   std::array<double, static_cast<std::size_t>(max_rows)>
       drift{};  ///< rate of the velocities along the rows at constant velocities of the bodies [m/s^2]
   Index source = none;  ///< of a limit and of friction in a joint: its number in the detector

@@ -2,25 +2,49 @@
 
 #include <carom/contact/detection/rolling_resistance.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace carom {
+
+namespace {
+
+/// The longest lever of a contact, or the offset of its normal force where that is longer, up to a power of
+/// two: spins and moments are not rounded by it. [m]
+double arm_of(const Constraint& contact) {
+  constexpr int of_planar_body = 3;
+  double longest = contact.law.rolling_resistance;
+  int column = 0;
+  for (int b = 0; b < contact.bodies; ++b) {
+    const int columns = contact.blocks[static_cast<std::size_t>(b)].columns;
+    column += columns;
+    if (columns < of_planar_body) continue;
+    longest = std::max(longest, std::hypot(contact.row(0)[column - 1], contact.row(1)[column - 1]));
+  }
+  return std::exp2(std::ilogb(longest));
+}
+
+}  // namespace
 
 Constraint rolling_resistance(const Constraint& contact, const GroundMotion* motion) {
   constexpr int of_planar_body = 3;
   Constraint row = contact;
   row.type = ConstraintType::rolling;
   row.rows = 1;
-  row.friction = contact.law.rolling_resistance;
+  const double arm = arm_of(contact);
+  row.of_joint.length = arm;
+  row.friction = contact.law.rolling_resistance / arm;
   row.law.tangential_restitution = contact.law.rolling_restitution;
   row.allowed_approach = 0.0;
   row.surface_velocity = row.surface_velocity_after = row.drift = {};
   if (motion != nullptr) {
-    row.surface_velocity[0] = row.surface_velocity_after[0] = motion->spin;
-    row.drift[0] = -motion->angular_acceleration;
+    row.surface_velocity[0] = row.surface_velocity_after[0] = arm * motion->spin;
+    row.drift[0] = -arm * motion->angular_acceleration;
   }
   row.jacobian = {};
   double* number = row.jacobian.data();
-  double sign = 1.0;
-  for (int b = 0; b < row.bodies; ++b, sign = -1.0) {
+  double sign = arm;
+  for (int b = 0; b < row.bodies; ++b, sign = -arm) {
     const int columns = row.blocks[static_cast<std::size_t>(b)].columns;
     if (columns == of_planar_body) number[columns - 1] = sign;
     number += columns;

@@ -172,7 +172,7 @@ void ClockGroup::list_forces(std::vector<LastingContact>& out) {
   const Assembly& assembly = *parts_.motion.model().assembly;
   for (const ActiveContact& contact : parts_.motion.active().list()) {
     if (contact.at.type == ConstraintType::rolling) {
-      out.back().rolling_moment = contact.tangential;
+      out.back().rolling_moment = contact.at.of_joint.length * contact.tangential;
     } else if (contact.at.type == ConstraintType::contact) {
       LastingContact& force = out.emplace_back();
       const Constraint& closed = contact.at;

@@ -162,11 +162,12 @@ void EventBalance::book_without_normal(const SolvedImpact& impact, std::size_t c
   const double impulse = map.impulse(c, 0);
   const double work = sum.add(impulse, map.before(c, 0), at.tangential_velocity(impact.velocity));
   if (at.type != ConstraintType::rolling) {
+    sum.allow_for_joint_friction(impulse, map.before(c, 0));
     flows[EnergyFlow::joint_friction] -= work;
     return;
   }
   EventRecord& event = fresh.back();
-  event.rolling_moment = impulse;
+  event.rolling_moment = at.of_joint.length * impulse;
   event.contact_work += work;
   flows[line_of_rolling(impact.kind)] -= work;
   flows[EnergyFlow::external] += impulse * at.surface_velocity[0];

@@ -35,7 +35,7 @@ double EventScales::noise_of(const SmoothMotion& motion, const Constraint& conta
     const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
     length = std::min(length, lengths[block.v + static_cast<Index>(block.columns) - 1]);
   }
-  return speed_noise / length;
+  return speed_noise * (contact.of_joint.length / length);
 }
 
 namespace {

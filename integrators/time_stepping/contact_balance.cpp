@@ -275,7 +275,7 @@ void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact
   const double moment = problem.impulses()[row];
   const double work = sum.add(moment, problem.before()[row], at.velocity_after(0, after));
   ContactRecord& entry = result_.records().back();
-  entry.rolling_moment = moment;
+  entry.rolling_moment = at.of_joint.length * moment;
   entry.contact_work += work;
   result_.flows[EnergyFlow::rolling] -= work;
   result_.flows[EnergyFlow::external] +=
@@ -323,6 +323,7 @@ void StepBalance::book_joint_friction(const IslandProblem& problem, std::size_t 
   result_.flows[EnergyFlow::joint_friction] -= moment * mean_rate;
   sum.gain += moment * mean_rate;
   sum.scale += 2.0 * std::abs(moment) * std::max(std::abs(before), std::abs(mean_rate));
+  sum.allow_for_joint_friction(moment, before);
   result_.report.joint_impulses.push_back(
       {JointId{at.key.a.serial, assembly_->system().token()}, reaction, result_.report.time});
   const ContactMode mode = problem.modes()[contact];

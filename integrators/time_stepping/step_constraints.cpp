@@ -173,7 +173,9 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
       with_rolling_.push_back(rolling_resistance(out[i], ground_motion_of(detector_, out[i], places_)));
       with_rolling_.back().drift = {};  // steps take the spins at both ends
       const GroundMotion* const after = ground_motion_of(detector_, out[i], places_after_);
-      if (after != nullptr) with_rolling_.back().surface_velocity_after[0] = after->spin;
+      if (after == nullptr) continue;
+      Constraint& rolling = with_rolling_.back();
+      rolling.surface_velocity_after[0] = rolling.of_joint.length * after->spin;
     }
   }
   out.swap(with_rolling_);

@@ -75,8 +75,10 @@ bool run(Simulation& simulation) {
 }
 
 void expect_no_gain(const carom_test::SeedRange& seeds) {
-  // Kinetic energies are sums of a few roundings.
-  constexpr double rounding = 1e-12;
+  // Friction in joints has the restitution of the contact less 1e-11 of it, which decides between answers
+  // that move alike (contact/impact_restitution.cpp): half of that of |P gamma^-|, which is of the size of
+  // the energy, may be gained by each of up to three joints.
+  constexpr double of_choice = 1.5e-11;
   int ended = 0;
   int impacts = 0;
   for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
@@ -92,7 +94,8 @@ void expect_no_gain(const carom_test::SeedRange& seeds) {
     for (const EventRecord& event : events.events()) {
       if (event.kind != EventKind::impact) continue;
       ++impacts;
-      EXPECT_LE(event.energy_after, event.energy_before * (1.0 + rounding)) << name;
+      EXPECT_EQ(event.energy_gain, 0.0) << name;
+      EXPECT_LE(event.energy_after, event.energy_before * (1.0 + of_choice)) << name;
     }
   }
   EXPECT_GT(impacts, seeds.count() / 4);
@@ -101,6 +104,20 @@ void expect_no_gain(const carom_test::SeedRange& seeds) {
 TEST(JointFrictionImpacts, WithOneRestitutionNothingIsGained) {
   expect_no_gain({0, static_cast<std::uint64_t>(carom_test::count_of_samples(16))});
 }
+// The contact and the pin of the bar that it strikes move together. Of impulses that lead to the same motion
+// the law takes those against the rate after the impact, for which friction has 1e-11 less restitution. The
+// 7e-13 J that this gave were told as a gain of the law, and refused.
+TEST(JointFrictionImpacts, WhatChoosesBetweenAnswersThatMoveAlikeIsNoGain) {
+  const Scenario scenario(7000036);
+  const ImpactRules refuse{.energy_gain = EnergyGain::refuse};
+  for (const Mode& mode : {Mode(TimeStepping{.step = 1e-3, .impact_rules = refuse}),
+                           Mode(EventDriven{.impact_rules = refuse, .event_limit = 1e5})}) {
+    Simulation simulation(scenario.linkage.scene.system, mode);
+    EXPECT_NO_THROW(simulation.run_until(end));
+    EXPECT_EQ(simulation.statistics().energy_gains, 0);
+  }
+}
+
 TEST(JointFrictionImpactsLong, WithOneRestitutionNothingIsGained) {
   expect_no_gain(carom_test::seeds_from(16, 44, 484));
 }

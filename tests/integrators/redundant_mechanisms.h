@@ -59,6 +59,7 @@ struct Linkage {
 /// moves without turning.
 struct ParallelCranks {
   Linkage linkage;
+  double line = 0.0;     ///< angle at which all are in line
   double spin = 0.0;     ///< at the start
   double gravity = 0.0;  ///< 0 or g
   double end = 0.0;      ///< after some five positions in line
@@ -66,8 +67,8 @@ struct ParallelCranks {
   explicit ParallelCranks(std::uint64_t seed) {
     carom_test::Random random(seed);
     const unsigned cranks = 2 + random.below(7), couplers = 1 + (random.below(3) == 0 ? random.below(3) : 0);
-    const double line = random.uniform(-3.0, 3.0), length = random.uniform(0.3, 1.0);
-    const double start = line + random.uniform(0.3, 2.8);
+    line = random.uniform(-3.0, 3.0);
+    const double length = random.uniform(0.3, 1.0), start = line + random.uniform(0.3, 2.8);
     gravity = random.below(2) == 0 ? 0.0 : g;
     // Over the top, wherever that is.
     spin = std::sqrt(6.0 * g / length) * random.uniform(1.0, 2.0) * (random.below(2) == 0 ? -1.0 : 1.0);

@@ -88,33 +88,37 @@ void expect_passage(const ParallelCranks& cranks, FlowMethod method, const std::
   EXPECT_NEAR(simulation.state().angle(crank) - angle, cranks.spin * cranks.end, 16.0 * of_steps) << name;
 }
 
-/// Steps of adams and bdf shrink to nothing before the position: an error that names the joints.
-bool stops_before(std::uint64_t seed, FlowMethod method) {
-  return seed == 27 && (method == FlowMethod::adams || method == FlowMethod::bdf);
-}
-
-void expect_named(const ParallelCranks& cranks, FlowMethod method) {
-  Simulation simulation(cranks.linkage.scene.system, options(method, 1e-9, cranks.end));
-  EXPECT_THROWS(SolverError, simulation.run_until(cranks.end), "step_limit",
-                "near a singular position of the joints", "revolute joint 'pin");
+/// True if steps of a multistep method have shrunk to nothing in a position in line, and the error names
+/// pins.
+bool stops_in_line(const ParallelCranks& cranks, FlowMethod method, const SolverError& error) {
+  constexpr double near = 1e-3;  // rows let go within 3e-5 rad, and lose digits before
+  const std::string what = error.what();
+  if (method != FlowMethod::adams && method != FlowMethod::bdf) return false;
+  if (what.find("step_limit") == std::string::npos ||
+      what.find("near a singular position of the joints: revolute joint 'pin") == std::string::npos) {
+    return false;
+  }
+  Simulation simulation(cranks.linkage.scene.system, EventDriven{});
+  simulation.run_until(error.failure().time + error.failure().step);
+  const double angle = simulation.state().angle(cranks.linkage.scene.bodies.front());
+  return std::abs(std::sin(angle - cranks.line)) < near;
 }
 
 void expect_passages(const carom_test::SeedRange& seeds) {
+  int stopped = 0;
   for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
     const ParallelCranks cranks(seed);
     for (const FlowMethod method : methods) {
-      if (stops_before(seed, method)) {
-        expect_named(cranks, method);
-        continue;
-      }
       const std::string name = "cranks " + std::to_string(seed) + " by " + label(method);
       try {
         expect_passage(cranks, method, name);
       } catch (const SolverError& error) {
-        ADD_FAILURE() << name << ": " << error.what();
+        EXPECT_TRUE(stops_in_line(cranks, method, error)) << name << ": " << error.what();
+        ++stopped;
       }
     }
   }
+  EXPECT_LE(stopped, seeds.count() / 4);  // seen: 2 and 5 of 29
 }
 TEST(SingularPositions, RandomParallelCranks) { expect_passages({0, 1}); }
 TEST(SingularPositionsLong, RandomParallelCranks) { expect_passages(carom_test::seeds_from(1, 29, 199)); }
