@@ -33,8 +33,9 @@ struct ExactAttempt {
 
 /// One contact exactly by its modes, several by principal pivoting, then Lemke, then projection; where that
 /// ends near an answer by problems nearby that are regular; up to three by enumeration of the modes when all
-/// else failed. Contacts that all separate, and one with rolling resistance, get no impulses: where friction
-/// is strong the solvers might find another solution. Reuse it: its memory is kept.
+/// else failed. An answer of sweeps that is good enough is only shown to principal pivoting. Contacts that
+/// all separate, and one with rolling resistance, get no impulses: where friction is strong the solvers might
+/// find another solution. Reuse it: its memory is kept.
 class ExactSolvers {
 public:
   /// Tries solvers until an answer is accepted, and concludes.
