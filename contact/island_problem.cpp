@@ -10,14 +10,12 @@
 #include <carom/contact/free_velocity.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/island_rows.h>
-#include <carom/contact/plastic_jams.h>
 #include <carom/contact/solvers/planar_certificate.h>
 #include <carom/core/errors.h>
 
 #include <algorithm>
 #include <array>
 #include <string>
-#include <utility>
 
 namespace carom {
 

@@ -32,7 +32,7 @@ void PlasticJam::resolve(const AnsweredProblem& at, bool by_newton, SolverChain&
   if (!remove_restitution(at)) return;
   // Those of a jam have grown without bound.
   std::fill(at.answer.impulse.begin(), at.answer.impulse.end(), 0.0);
-  at.answer.known = at.answer.known && !had_answer;
+  at.answer.known = false;
   chain.solve(at.problem, at.answer);
   found_ = !had_answer || (at.answer.report.usable() && were_without_measure(at));
   if (!found_) restore(at);
