@@ -20,6 +20,7 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 using carom_test::end_in;
+using carom_test::event_options_in;
 using carom_test::Random;
 using carom_test::Units;
 
@@ -85,23 +86,13 @@ TEST(RollingUnits, StepsAreTheSameNumbers) {
 }
 
 TEST(RollingUnits, EventsAreTheSame) {
-  const auto options = [](const Units& units) {
-    EventDriven result;
-    result.absolute_tolerance *= units.length;
-    result.gap_tolerance *= units.length;
-    result.capture_speed *= units.speed();
-    result.interval *= units.time;
-    result.longest_step *= units.time;
-    result.event_limit /= units.time;
-    result.step_limit /= units.time;
-    return result;
-  };
   for (std::uint64_t seed = 1; seed < 9; ++seed) {
-    const std::vector<double> expected = end_in(usual, rolling_carts(seed, usual), options(usual), end);
+    const std::vector<double> expected =
+        end_in(usual, rolling_carts(seed, usual), event_options_in(usual), end);
     for (const Units& units : others) {
       SCOPED_TRACE("seed " + std::to_string(seed) + ", in " + to_text(units.length) + " m");
       // Tolerances of 1e-9 of the steps, which some twenty impacts amplify.
-      expect_same(end_in(units, rolling_carts(seed, units), options(units), end), expected, 1e-6);
+      expect_same(end_in(units, rolling_carts(seed, units), event_options_in(units), end), expected, 1e-6);
     }
   }
 }

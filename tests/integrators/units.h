@@ -17,6 +17,19 @@ struct Units {
   [[nodiscard]] double force() const { return mass * acceleration(); }
 };
 
+/// Options of the event-driven mode by default, in units.
+inline carom::EventDriven event_options_in(const Units& units) {
+  carom::EventDriven options;
+  options.absolute_tolerance *= units.length;
+  options.gap_tolerance *= units.length;
+  options.capture_speed *= units.speed();
+  options.interval *= units.time;
+  options.longest_step *= units.time;
+  options.event_limit /= units.time;
+  options.step_limit /= units.time;
+  return options;
+}
+
 /// Places, angles, velocities and spins of planar bodies after some units of time, in the units.
 inline std::vector<double> end_in(const Units& units, const carom::System& system, const carom::Mode& mode,
                                   double time) {

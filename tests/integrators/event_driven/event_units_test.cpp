@@ -23,19 +23,6 @@ namespace {
 using namespace body_scenes;
 using carom_test::Units;
 
-/// Options by default, in units.
-EventDriven options_in(const Units& units) {
-  EventDriven options;
-  options.absolute_tolerance *= units.length;
-  options.gap_tolerance *= units.length;
-  options.capture_speed *= units.speed();
-  options.interval *= units.time;
-  options.longest_step *= units.time;
-  options.event_limit /= units.time;
-  options.step_limit /= units.time;
-  return options;
-}
-
 Gravity gravity_in(const Units& units) { return Gravity{{0.0, -g * units.acceleration()}}; }
 
 BodyId add_disc(const Units& units, System& system, double m, double radius, const Vec<2>& place,
@@ -47,7 +34,7 @@ BodyId add_disc(const Units& units, System& system, double m, double radius, con
 using Scene = std::function<System(const Units&)>;
 
 std::vector<double> end_of(const Scene& scene, const Units& units, double time = 1.5) {
-  return carom_test::end_in(units, scene(units), options_in(units), time);
+  return carom_test::end_in(units, scene(units), carom_test::event_options_in(units), time);
 }
 
 void expect_same(const Scene& scene, double tolerance) {
@@ -271,7 +258,7 @@ TEST(EventUnits, ShortFlightsAreSearchedWithFewLooks) {
     system.add(Peg{.centre = {0.4 * units.length, 0.3 * units.length}, .radius = 0.05 * units.length});
     add_box(system, units.mass, 0.2 * units.length, 0.1 * units.length,
             {0.5 * units.length, 0.7 * units.length}, 0.3, {units.speed(), 0.0}, 5.0 / units.time);
-    EventDriven options = options_in(units);
+    EventDriven options = carom_test::event_options_in(units);
     options.evaluation_limit = 10000;  // of one step or event; 40 corners and walls at 200 looks
     Simulation simulation(system, options);
     EXPECT_NO_THROW(simulation.run_until(2.0 * units.time)) << units.length << " m, " << units.time << " s";
