@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace {
 
@@ -79,6 +80,11 @@ void pouring(benchmark::State& state) {
   time_steps(state, discs, {.step = step}, 0.75 * end - 0.5);
 }
 
+std::vector<carom::Vec<2>> corners_of(double width, double height) {
+  const double x = 0.5 * width, y = 0.5 * height;
+  return {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
+}
+
 /// Its cost should grow as that of discs on a floor.
 void laden_tray(benchmark::State& state) {
   using namespace carom::planar;
@@ -90,10 +96,7 @@ void laden_tray(benchmark::State& state) {
   system.set_default_law({.friction = 0.5, .normal_restitution = 0.0, .tangential_restitution = 0.0});
   const carom::BodyId tray =
       system.add(RigidBody{.mass = box(count, width, 2.0 * radius), .position = {0.0, -radius}});
-  system.add(Polygon{
-      .body = tray,
-      .vertices = {
-          {-0.5 * width, -radius}, {0.5 * width, -radius}, {0.5 * width, radius}, {-0.5 * width, radius}}});
+  system.add(Polygon{.body = tray, .vertices = corners_of(width, 2.0 * radius)});
   system.add(Revolute{.from = {carom::ground, {0.0, -radius}}, .to = tray});
   for (int i = 0; i < count; ++i) {
     const carom::Vec<2> place(pitch * (i - 0.5 * (count - 1)), radius);
@@ -108,8 +111,8 @@ void laden_tray(benchmark::State& state) {
 
 void dominoes(benchmark::State& state) {
   using namespace carom::planar;
-  constexpr double height = 0.041, width = 0.0076, pitch = 0.0276, push = 4.0,
-                   from = 0.6;  // [m], [rad/s], [s]
+  constexpr double height = 0.041, width = 0.0076, pitch = 0.0276;  // [m]
+  constexpr double push = 4.0, from = 0.6;                          // [rad/s], [s]
   carom::System system;
   system.add(Gravity{{0.0, -scenes::discs_gravity}});
   system.set_default_law({.friction = 0.2, .normal_restitution = 0.0, .tangential_restitution = 0.0});
@@ -121,11 +124,7 @@ void dominoes(benchmark::State& state) {
                                                       .position = {i * pitch, 0.5 * height},
                                                       .velocity = 0.5 * spin * carom::Vec<2>(height, width),
                                                       .spin = -spin});
-    system.add(Polygon{.body = domino,
-                       .vertices = {{-0.5 * width, -0.5 * height},
-                                    {0.5 * width, -0.5 * height},
-                                    {0.5 * width, 0.5 * height},
-                                    {-0.5 * width, 0.5 * height}}});
+    system.add(Polygon{.body = domino, .vertices = corners_of(width, height)});
   }
   carom::Simulation simulation(system, carom::TimeStepping{.step = 0.1 * step});
   simulation.run_until(from);
