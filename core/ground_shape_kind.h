@@ -12,6 +12,18 @@
 
 namespace carom {
 
+/// Points of which each is `stride` numbers behind the one before.
+struct PointRow {
+  static constexpr Index most = 64;  ///< that are looked at together
+
+  const double* points = nullptr;  ///< of the first
+  Index stride = 0;                ///< numbers from one to the next
+  Index count = 0;                 ///< of points
+
+  /// Coordinates of one of them.
+  [[nodiscard]] const double* point(Index i) const { return points + i * stride; }
+};
+
 /// Distance from a shape and its gradient.
 struct Gap {
   double distance = 0.0;           ///< positive outside, negative inside [m]
@@ -86,22 +98,23 @@ public:
   [[nodiscard]] virtual Gap moved_gap(Index slot, const GroundMotion& /*motion*/, const double* point) const {
     return gap(slot, point);
   }
-  /// True if gap() finds any of `count` points, `stride` numbers apart, at a distance <= `margin` [m], or at
-  /// one that is no number.
-  [[nodiscard]] virtual bool any_within(Index slot, const double* points, Index stride, Index count,
-                                        double margin) const {
-    for (Index i = 0; i < count; ++i) {
-      if (!(gap(slot, points + i * stride).distance > margin)) return true;
+  /// Which of up to 64 points gap() finds at a distance <= `margin` [m], or at one that is no number: bit i
+  /// of the point number i.
+  [[nodiscard]] virtual std::uint64_t points_within(Index slot, const PointRow& row, double margin) const {
+    std::uint64_t within = 0;
+    for (Index i = 0; i < row.count; ++i) {
+      within |= std::uint64_t{!(gap(slot, row.point(i)).distance > margin)} << i;
     }
-    return false;
+    return within;
   }
   /// Likewise with moved_gap().
-  [[nodiscard]] virtual bool any_within_moved(Index slot, const GroundMotion& motion, const double* points,
-                                              Index stride, Index count, double margin) const {
-    for (Index i = 0; i < count; ++i) {
-      if (!(moved_gap(slot, motion, points + i * stride).distance > margin)) return true;
+  [[nodiscard]] virtual std::uint64_t points_within_moved(Index slot, const GroundMotion& motion,
+                                                          const PointRow& row, double margin) const {
+    std::uint64_t within = 0;
+    for (Index i = 0; i < row.count; ++i) {
+      within |= std::uint64_t{!(moved_gap(slot, motion, row.point(i)).distance > margin)} << i;
     }
-    return false;
+    return within;
   }
 };
 

@@ -8,23 +8,19 @@
 #include <carom/core/ground_shape_kind.h>
 #include <carom/core/space.h>
 
-namespace carom {
+#include <cstdint>
 
-/// Points of which each is `stride` numbers behind the one before.
-struct PointRow {
-  const double* points = nullptr;  ///< of the first
-  Index stride = 0;                ///< numbers from one to the next
-  Index count = 0;                 ///< of points
-};
+namespace carom {
 
 /// Distance of a point from the boundary, and its gradient. \param point D numbers [m]
 template <int D>
 [[nodiscard]] CAROM_API Gap gap_point_half_space(const double* point, const Vec<D>& origin,
                                                  const Vec<D>& normal);
 
-/// True if the distance of any point is <= `margin` [m].
+/// Which of up to 64 points have a distance <= `margin` [m], or one that is no number: bit i of the point
+/// number i.
 template <int D>
-[[nodiscard]] CAROM_API bool any_point_in_half_space(const PointRow& row, const Vec<D>& origin,
-                                                     const Vec<D>& normal, double margin);
+[[nodiscard]] CAROM_API std::uint64_t points_in_half_space(const PointRow& row, const Vec<D>& origin,
+                                                           const Vec<D>& normal, double margin);
 
 }  // namespace carom

@@ -1,6 +1,7 @@
 #include <carom/contact/detection/ground_contacts.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -116,27 +117,44 @@ Index GroundContacts::material_of(const CentreRun& centres) const {
   return centres.points == none ? centres.material : features_.points()[centres.points].material;
 }
 
-GroundContacts::ShapeBits GroundContacts::shapes_near(Range bodies, const CentreRun& centres,
-                                                      const ContactQuery& query) const {
-  if (query.lasting != nullptr) {
-    const bool bare = centres.points == none;
-    const bool others_open = shapes_.any_moves() || query.lasting->keeps_pressed();
-    if (bare ? query.lasting->any_centre(bodies) : others_open) return all_shapes;
+bool GroundContacts::may_touch(const CentreRow& row, const double* q) const {
+  bool may = false;
+  for_parts({0, row.count}, PointRow::most, [&](Range part) {
+    const PointRow points{q + row.q + part.begin * row.stride, row.stride, part.size()};
+    may = may || shapes_.points_within(row.shape, nullptr, points, row.reach) != 0;
+  });
+  return may;
+}
+
+bool GroundContacts::find_near(Range bodies, const CentreRun& centres, const ContactQuery& query,
+                               ShapesOfEach& near) const {
+  const LastingContacts* const lasting = query.lasting;
+  const bool bare = centres.points == none;
+  if (lasting != nullptr &&
+      (bare ? lasting->any_centre(bodies) : shapes_.any_moves() || lasting->keeps_pressed())) {
+    near.fill(all_shapes);
+    return true;
   }
-  const double slack = query.lasting == nullptr ? 0.0 : query.lasting->slack();
-  const double margin = reach_of(centres, query.margin + slack);
+  std::fill_n(near.begin(), bodies.size(), 0);
+  const std::uint64_t all_bodies = ~std::uint64_t{0} >> (PointRow::most - bodies.size());
+  const double margin = reach_of(centres, query.margin + (lasting == nullptr ? 0.0 : lasting->slack()));
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];
   const PointRow row{query.state.q + slot.q, slot.q_size, bodies.size()};
   const std::span<const Index> touched = laws_.touched_by(material_of(centres));
-  ShapeBits near = 0;
-  bool may_open = slack != 0.0;
+  std::uint64_t any = 0;
   for (std::size_t place = 0; place < touched.size(); ++place) {
     const Index shape = touched[place];
-    if (shapes_.any_within(shape, shapes_.motion(shape, query.places), row, margin)) near |= bit_of(place);
-    may_open = may_open || (query.lasting != nullptr && !shapes_.is_flat(shape));
+    // Contacts with curved shapes last beyond the margin where turning explains it.
+    const bool may_be_open = lasting != nullptr && !bare && !shapes_.is_flat(shape);
+    std::uint64_t within =
+        may_be_open ? all_bodies
+                    : shapes_.points_within(shape, shapes_.motion(shape, query.places), row, margin);
+    any |= within;
+    for (; within != 0; within &= within - 1) {
+      near[static_cast<std::size_t>(std::countr_zero(within))] |= bit_of(place);
+    }
   }
-  // Contacts that last may be open beyond the margin.
-  return near != 0 && may_open ? all_shapes : near;
+  return any != 0;
 }
 
 /// Calls f(run) for the centres of some components.
@@ -157,7 +175,10 @@ bool GroundContacts::any_near(Range components, const ContactQuery& query) const
   bool any = false;
   for_runs(components, [&](const CentreRun& run) {
     if (run.points != none) others -= run.bodies.size();
-    any = any || shapes_near(run.bodies, run, query) != 0;
+    for_parts(run.bodies, PointRow::most, [&](Range part) {
+      ShapesOfEach near;
+      any = any || find_near(part, run, query, near);
+    });
   });
   return any || others > 0;
 }
@@ -219,10 +240,9 @@ void GroundContacts::find_in(Range components, const ContactQuery& query, Out& o
   }
 }
 
-/// Centres are looked at so many at a time; fewer, and one by one, only where any of them touches.
+/// Many centres are looked at together.
 template <int D, class Out>
 void GroundContacts::find_among(Range components, const ContactQuery& query, Out& out) const {
-  constexpr Index many = 64, few = 8;
   const BodySlots& bodies = assembly_->layout()->bodies();
   const std::vector<BodyFeature>& points = features_.points();
   PointsInOrder rest(points, features_.of(components).points);
@@ -236,25 +256,22 @@ void GroundContacts::find_among(Range components, const ContactQuery& query, Out
       rest.before(centres.bodies.begin, add_point);
       rest.skip_to(centres.points + centres.bodies.size());
     }
-    const auto add_bodies = [&](Range some, ShapeBits near) {
-      for (Index body = some.begin; body < some.end; ++body) {
-        if (rounded) {
-          add_some(centres.points + (body - centres.bodies.begin), near);
-          continue;
-        }
-        rest.before(body, add_point);
-        const BodySlot at = bodies[body];
-        add<D>(at, BodyFeature::at_centre(at, body, centres.material), near, query, out);
-      }
+    const auto add_body = [&](Index body, ShapeBits near) {
+      if (rounded) return add_some(centres.points + (body - centres.bodies.begin), near);
+      rest.before(body, add_point);
+      const BodySlot at = bodies[body];
+      add<D>(at, BodyFeature::at_centre(at, body, centres.material), near, query, out);
     };
-    if (centres.bodies.size() <= hardly_any) return add_bodies(centres.bodies, all_shapes);
-    for_parts(centres.bodies, many, [&](Range part) {
-      const ShapeBits of_part = shapes_near(part, centres, query);
-      if (of_part == 0) return;
-      for_parts(part, few, [&](Range some) {
-        const ShapeBits near = some.size() == part.size() ? of_part : shapes_near(some, centres, query);
-        if (near != 0) add_bodies(some, near);
-      });
+    for_parts(centres.bodies, PointRow::most, [&](Range part) {
+      ShapesOfEach near;
+      if (part.size() <= hardly_any) {
+        near.fill(all_shapes);
+      } else if (!find_near(part, centres, query, near)) {
+        return;
+      }
+      for (Index body = part.begin; body < part.end; ++body) {
+        if (const ShapeBits shapes = near[body - part.begin]; shapes != 0) add_body(body, shapes);
+      }
     });
   });
   rest.before(none, add_point);

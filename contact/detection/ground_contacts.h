@@ -15,6 +15,7 @@
 #include <carom/core/export.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -57,9 +58,7 @@ public:
   [[nodiscard]] bool centres_tell() const;
   /// False if surely no contact of a row, whose shape is at rest, has a gap up to the margin. \param q all
   /// coordinates
-  [[nodiscard]] bool may_touch(const CentreRow& row, const double* q) const {
-    return shapes_.any_within(row.shape, nullptr, {q + row.q, row.stride, row.count}, row.reach);
-  }
+  [[nodiscard]] bool may_touch(const CentreRow& row, const double* q) const;
   /// Likewise those of one body.
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
   /// Appends all pairs of one component, in the order of find().
@@ -96,9 +95,10 @@ private:
   template <class F>
   void for_runs(Range components, F&& f) const;
   [[nodiscard]] bool only_points(Range runs) const;
-  // Shapes with which any of some neighbours in a run may have a contact.
-  [[nodiscard]] ShapeBits shapes_near(Range bodies, const CentreRun& centres,
-                                      const ContactQuery& query) const;
+  // Shapes with which each of some neighbours in a run may have a contact.
+  using ShapesOfEach = std::array<ShapeBits, PointRow::most>;
+  // Finds them. False if there are none.
+  bool find_near(Range bodies, const CentreRun& centres, const ContactQuery& query, ShapesOfEach& near) const;
 
   const Assembly* assembly_;
   GroundShapes shapes_;

@@ -69,14 +69,13 @@ public:
   [[nodiscard]] Gap gap(Index /*slot*/, const double* /*point*/) const override {
     return {std::numeric_limits<double>::infinity(), {0.0, 1.0, 0.0}};
   }
-  [[nodiscard]] bool any_within(Index /*slot*/, const double* /*points*/, Index /*stride*/, Index /*count*/,
-                                double /*margin*/) const override {
-    return false;
+  [[nodiscard]] std::uint64_t points_within(Index /*slot*/, const PointRow& /*row*/,
+                                            double /*margin*/) const override {
+    return 0;
   }
-  [[nodiscard]] bool any_within_moved(Index /*slot*/, const GroundMotion& /*motion*/,
-                                      const double* /*points*/, Index /*stride*/, Index /*count*/,
-                                      double /*margin*/) const override {
-    return false;
+  [[nodiscard]] std::uint64_t points_within_moved(Index /*slot*/, const GroundMotion& /*motion*/,
+                                                  const PointRow& /*row*/, double /*margin*/) const override {
+    return 0;
   }
   void fingerprint(Fingerprint& print) const override;
 

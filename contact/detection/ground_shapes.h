@@ -99,12 +99,12 @@ public:
     const bool is_number = gap.distance >= std::numeric_limits<double>::lowest();
     if (!is_number || !(std::abs(square - 1.0) <= exact)) refuse(shape, gap, point, time);
   }
-  /// True if any of some points is at a distance <= `margin` [m] from a shape.
-  [[nodiscard]] bool any_within(Index shape, const GroundMotion* motion, const PointRow& row,
-                                double margin) const {
+  /// Which of up to 64 points are at a distance <= `margin` [m] from a shape: bit i of the point number i.
+  [[nodiscard]] std::uint64_t points_within(Index shape, const GroundMotion* motion, const PointRow& row,
+                                            double margin) const {
     const Shape& at = shapes_[shape];
-    if (motion == nullptr) return at.kind->any_within(at.slot, row.points, row.stride, row.count, margin);
-    return at.kind->any_within_moved(at.slot, *motion, row.points, row.stride, row.count, margin);
+    if (motion == nullptr) return at.kind->points_within(at.slot, row, margin);
+    return at.kind->points_within_moved(at.slot, *motion, row, margin);
   }
 
 private:

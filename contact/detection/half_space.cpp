@@ -94,16 +94,14 @@ Gap HalfSpaceKind<D>::moved_gap(Index slot, const GroundMotion& motion, const do
 }
 
 template <int D>
-bool HalfSpaceKind<D>::any_within(Index slot, const double* points, Index stride, Index count,
-                                  double margin) const {
-  return any_point_in_half_space<D>({points, stride, count}, parts_[slot].point, parts_[slot].normal, margin);
+std::uint64_t HalfSpaceKind<D>::points_within(Index slot, const PointRow& row, double margin) const {
+  return points_in_half_space<D>(row, parts_[slot].point, parts_[slot].normal, margin);
 }
 
 template <int D>
-bool HalfSpaceKind<D>::any_within_moved(Index slot, const GroundMotion& motion, const double* points,
-                                        Index stride, Index count, double margin) const {
-  return any_point_in_half_space<D>({points, stride, count}, point_of<D>(motion),
-                                    turned(parts_[slot].normal, motion), margin);
+std::uint64_t HalfSpaceKind<D>::points_within_moved(Index slot, const GroundMotion& motion,
+                                                    const PointRow& row, double margin) const {
+  return points_in_half_space<D>(row, point_of<D>(motion), turned(parts_[slot].normal, motion), margin);
 }
 
 template <int D>

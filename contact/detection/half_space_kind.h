@@ -36,10 +36,9 @@ public:
   void discontinuity_times(Index slot, std::vector<double>& out) const override;
   [[nodiscard]] Gap gap(Index slot, const double* point) const override;
   [[nodiscard]] Gap moved_gap(Index slot, const GroundMotion& motion, const double* point) const override;
-  [[nodiscard]] bool any_within(Index slot, const double* points, Index stride, Index count,
-                                double margin) const override;
-  [[nodiscard]] bool any_within_moved(Index slot, const GroundMotion& motion, const double* points,
-                                      Index stride, Index count, double margin) const override;
+  [[nodiscard]] std::uint64_t points_within(Index slot, const PointRow& row, double margin) const override;
+  [[nodiscard]] std::uint64_t points_within_moved(Index slot, const GroundMotion& motion, const PointRow& row,
+                                                  double margin) const override;
   void fingerprint(Fingerprint& print) const override;
 
 private:

@@ -35,23 +35,31 @@ TYPED_TEST(GapPointHalfSpace, IsTheHeightOverTheBoundary) {
   }
 }
 
-// The pre-check of many points decides as the gaps of all of them do, to the bit.
-TYPED_TEST(GapPointHalfSpace, AnyIsTheLeastOfAll) {
+// The pre-check of many points decides as the gap of each of them does, to the bit.
+TYPED_TEST(GapPointHalfSpace, ManyPointsAreWithinAsEachOfThem) {
   constexpr int D = TypeParam::value;
   carom_test::Random random(4102);
-  constexpr Index stride = D + 1, count = 9;
-  for (int repeat = 0; repeat < 100; ++repeat) {
-    const Vec<D> origin = random.vec<D>(), normal = random.vec<D>().normalized();
-    std::vector<double> numbers;
-    for (Index i = 0; i < stride * count; ++i) numbers.push_back(random.uniform(-1.0, 1.0));
-    double least = std::numeric_limits<double>::infinity();
-    for (Index i = 0; i < count; ++i) {
-      least = std::min(least, gap_point_half_space<D>(numbers.data() + i * stride, origin, normal).distance);
+  constexpr Index stride = D + 1;
+  for (const Index count : {Index{0}, Index{1}, Index{9}, Index{64}}) {
+    for (int repeat = 0; repeat < 100; ++repeat) {
+      const Vec<D> origin = random.vec<D>(), normal = random.vec<D>().normalized();
+      std::vector<double> numbers{0.0};
+      for (Index i = 0; i < stride * count; ++i) numbers.push_back(random.uniform(-1.0, 1.0));
+      if (count > 1) numbers[0] = std::numeric_limits<double>::quiet_NaN();
+      const PointRow row{numbers.data(), stride, count};
+      const auto distance = [&](Index i) {
+        return gap_point_half_space<D>(row.point(i), origin, normal).distance;
+      };
+      const double margin = count > 1 ? distance(1) : random.uniform(-1.0, 1.0);  // one just within
+      std::uint64_t expected = 0;
+      for (Index i = 0; i < count; ++i) expected |= std::uint64_t{!(distance(i) > margin)} << i;
+      EXPECT_EQ(points_in_half_space<D>(row, origin, normal, margin), expected);
+      if (count > 1) {
+        EXPECT_NE(expected & 1, 0U);  // no number
+        const std::uint64_t less = points_in_half_space<D>(row, origin, normal, margin - 1e-9);
+        EXPECT_EQ(less & 2, 0U);
+      }
     }
-    const PointRow row{numbers.data(), stride, count};
-    EXPECT_TRUE(any_point_in_half_space<D>(row, origin, normal, least));
-    EXPECT_FALSE(any_point_in_half_space<D>(row, origin, normal, least - 1e-9));
-    EXPECT_FALSE(any_point_in_half_space<D>({numbers.data(), stride, 0}, origin, normal, 10.0));
   }
 }
 

@@ -260,7 +260,7 @@ TEST(GroundPieces, PointsDoNotTouchThem) {
   const Ground ground(system);
   const std::array<double, 2> point{0, 0};
   EXPECT_EQ(ground.shapes.gap(0, nullptr, point.data()).distance, infinity);
-  EXPECT_FALSE(ground.shapes.any_within(0, nullptr, {point.data(), 2, 1}, 1e100));
+  EXPECT_EQ(ground.shapes.points_within(0, nullptr, {point.data(), 2, 1}, 1e100), 0U);
 }
 
 TEST(GroundPieces, ImpossibleShapesAreRefused) {

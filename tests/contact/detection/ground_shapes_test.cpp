@@ -88,9 +88,9 @@ TEST(GroundShapes, PlacesAreFilledOncePerTime) {
   EXPECT_EQ(shapes.gap(0, nullptr, point.data()).distance, 5.0);
   EXPECT_EQ(shapes.gap(1, shapes.motion(1, places), point.data()).distance, 3.0);
   const PointRow row{point.data(), 2, 1};
-  EXPECT_FALSE(shapes.any_within(1, shapes.motion(1, places), row, 2.9));
-  EXPECT_TRUE(shapes.any_within(1, shapes.motion(1, places), row, 3.0));
-  EXPECT_FALSE(shapes.any_within(0, nullptr, row, 3.0));
+  EXPECT_EQ(shapes.points_within(1, shapes.motion(1, places), row, 2.9), 0U);
+  EXPECT_EQ(shapes.points_within(1, shapes.motion(1, places), row, 3.0), 1U);
+  EXPECT_EQ(shapes.points_within(0, nullptr, row, 3.0), 0U);
 }
 
 TEST(GroundShapes, MotionsThatAreNotFiniteLeaveNoPlaces) {
@@ -141,8 +141,8 @@ TEST(GroundShapes, AUsersOwnNeedsNoLookAtManyPoints) {
   const System copy = system;
   const GroundShapes shapes(copy);
   const std::vector<double> points{3.0, 0.0, 0.0, 2.5, -4.0, 0.0};
-  EXPECT_FALSE(shapes.any_within(0, nullptr, {points.data(), 2, 3}, 1.4));
-  EXPECT_TRUE(shapes.any_within(0, nullptr, {points.data(), 2, 3}, 1.6));
+  EXPECT_EQ(shapes.points_within(0, nullptr, {points.data(), 2, 3}, 1.4), 0U);
+  EXPECT_EQ(shapes.points_within(0, nullptr, {points.data(), 2, 3}, 1.6), 2U);
 }
 
 }  // namespace

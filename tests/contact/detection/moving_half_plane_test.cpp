@@ -269,8 +269,9 @@ TEST(MovingHalfPlane, StandsWhereItsFunctionsSay) {
   EXPECT_NEAR(gap.distance, normal.dot(x - o), 1e-15 * 10);
   EXPECT_NEAR(gap.normal[0], normal[0], 1e-15);
   EXPECT_NEAR(gap.normal[1], normal[1], 1e-15);
-  EXPECT_TRUE(kind.any_within_moved(0, motion, x.data(), 2, 1, gap.distance));
-  EXPECT_FALSE(kind.any_within_moved(0, motion, x.data(), 2, 1, std::nextafter(gap.distance, -infinity)));
+  EXPECT_EQ(kind.points_within_moved(0, motion, {x.data(), 2, 1}, gap.distance), 1U);
+  EXPECT_EQ(kind.points_within_moved(0, motion, {x.data(), 2, 1}, std::nextafter(gap.distance, -infinity)),
+            0U);
   // Rates by differences: linear functions of size 1, rounded, over steps of 1/4096 s.
   EXPECT_NEAR(motion.velocity[0], 1.0, 1e-11);
   EXPECT_NEAR(motion.velocity[1], -2.0, 1e-11);
