@@ -15,9 +15,10 @@ void set_parties(const Constraint& at, const Assembly& assembly, Record& out) {
   const Layout& layout = *assembly.layout();
   const bool of_bodies = at.type == ConstraintType::contact && at.bodies == 2;
   const bool of_ground = at.key.b.owner == FeatureKey::Owner::obstacle;
-  out.body = layout.id(at.body());
+  const BodyId body = layout.id(at.body()), other = of_bodies ? layout.id(at.blocks[1].body) : BodyId{};
+  out.body = body;
+  out.other = other;
   out.obstacle = of_ground ? ObstacleId{at.key.b.serial, assembly.system().token()} : ObstacleId{};
-  out.other = of_bodies ? layout.id(at.blocks[1].body) : BodyId{};
 }
 
 }  // namespace carom

@@ -54,6 +54,7 @@ void set_free_velocity_of_slots(std::span<const ImpulseDirection> directions,
   }
   const auto b = problem.vector();
   along_all_rows(problem.factors(), scratch, given, b);
+  if (!problem.factors().any_held) return;
   for (std::size_t row = 0; row < b.size(); ++row) {
     if (problem.diagonal(static_cast<int>(row)) > 0.0) continue;
     b[row] = along_held_row(*directions[row].constraint, directions[row].row, velocity_free, b[row]);

@@ -156,13 +156,13 @@ void IslandProblem::write_rows(Range some, const double* velocity_before) {
   const std::span<const Constraint> constraints = constraints_;
   constexpr std::size_t ahead = 12;  // constraints
   const bool factored = problem_.is_factored();
+  const PlanarRows all_rows{directions_.data(), problem_.sets().data(), before_.data(), restitution_.data(),
+                            scratch_.given.data()};
   auto row = static_cast<std::size_t>(first_row_[some.begin]);
   for (std::size_t c = some.begin; c < some.end; ++c) {
     fetch_contact_ahead(constraints, c + ahead);
     if (factored && is_planar_contact(constraints[c])) {
-      write_planar_contact(constraints[c], velocity_before, static_cast<int>(row),
-                           {&directions_[row], &problem_.sets()[row], &before_[row], &restitution_[row],
-                            &scratch_.given[row]});
+      write_planar_contact(constraints[c], velocity_before, static_cast<int>(row), all_rows.behind(row));
       row += 2;
       continue;
     }

@@ -58,6 +58,11 @@ struct PlanarRows {
   ImpulseDirection* directions;
   RowSet* sets;
   double *before, *restitution, *given;
+
+  /// Those so many rows behind these.
+  [[nodiscard]] PlanarRows behind(std::size_t rows) const {
+    return {directions + rows, sets + rows, before + rows, restitution + rows, given + rows};
+  }
 };
 
 /// Writes them as those of any constraint, without its cases. \param first number of the first row

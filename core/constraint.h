@@ -30,6 +30,10 @@ struct FeatureKey {
   Index serial = none;        ///< serial number of the owner
   Index feature = 0;          ///< number of the feature within its owner
   friend auto operator<=>(const FeatureKey&, const FeatureKey&) = default;
+  friend bool operator==(const FeatureKey& one, const FeatureKey& other) {  // compared often: no branches
+    const Index owners = static_cast<Index>(one.owner) ^ static_cast<Index>(other.owner);
+    return (owners | (one.serial ^ other.serial) | (one.feature ^ other.feature)) == 0;
+  }
 };
 
 /// Identity of a constraint: two features, the lesser first. Of a limit of a joint, and of friction in one,

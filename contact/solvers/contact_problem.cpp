@@ -92,25 +92,30 @@ void ContactProblem::resize_factors(int rows) {
   factored_ = true;
 }
 
-/// Diagonal of W, which solvers read most, and traces of its blocks. Checks on the way that rows of a group
-/// have the same slots.
+/// Diagonal of W, which solvers read most, traces of its blocks, and pairs of rows. Checks on the way that
+/// rows of a group have the same slots.
 void ContactProblem::group_factors() {
   const int slots = static_cast<int>(factors_.slots());
   factors_.largest_trace = 0.0;
+  double least = std::numeric_limits<double>::infinity();
   for (const RowGroup& group : groups_) {
     const auto first = static_cast<std::size_t>(group.first);
     if (group.size > 2) refuse(group.first, "a contact in factors has one friction row");
-    const std::array<int, 3>& shared = factors_.rows[first].slot;
+    ResponseFactors::Row* const rows = factors_.rows.data() + first;
+    const std::array<int, 3>& shared = rows[0].slot;
     if (std::max(std::max(shared[0], shared[1]), shared[2]) >= slots)
       refuse(group.first, "a slot that is none");
-    if (group.size == 2 && sets_[first + 1].kind == SetKind::bounded_interval && !factors_.any_bound() &&
-        share_two_slots(factors_.rows[first], factors_.rows[first + 1])) {  // the usual case, without loops
-      const std::array<double, 2> both = diagonal_of_both(factors_, &factors_.rows[first]);
+    rows[0].paired = group.size == 2 && share_slots(rows[0], rows[1]) ? slots_of(rows[0]) : 0;
+    if (rows[0].paired == 2 && sets_[first + 1].kind == SetKind::bounded_interval &&
+        !factors_.any_bound()) {  // the usual case, without loops
+      const std::array<double, 2> both = diagonal_of_both(factors_, rows);
       diagonal_[first] = both[0];
       diagonal_[first + 1] = both[1];
       factors_.largest_trace = larger_magnitude(factors_.largest_trace, both[0] + both[1]);
+      least = std::min(least, std::min(both[0], both[1]));
       continue;
     }
+    if (group.size == 2 && rows[0].paired == 0) rows[1].paired = 0;
     double trace = 0.0;
     for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
       const std::array<int, 3>& slot = factors_.rows[row].slot;
@@ -119,10 +124,12 @@ void ContactProblem::group_factors() {
       if (sets_[row].kind == SetKind::bounded_disc)
         refuse(static_cast<int>(row), "no disc in a problem in factors");
       diagonal_[row] = factors_.diagonal(row);
+      least = std::min(least, diagonal_[row]);
       trace += diagonal_[row];
     }
     factors_.largest_trace = larger_magnitude(factors_.largest_trace, trace);
   }
+  factors_.any_held = !(least > 0.0);
 }
 
 ContactProblem ContactProblem::dense() const {

@@ -16,12 +16,11 @@ namespace carom {
   return one.slot[0] == other.slot[0] && one.slot[1] == other.slot[1] && one.slot[2] == other.slot[2];
 }
 
-/// Whether two rows reach the same two slots, as those of a contact of two bodies do.
-[[nodiscard]] inline bool share_two_slots(const ResponseFactors::Row& one,
-                                          const ResponseFactors::Row& other) {
-  constexpr int no_slot = ResponseFactors::no_slot;
-  return one.slot[0] != no_slot && one.slot[1] != no_slot && one.slot[2] == no_slot &&
-         share_slots(one, other);
+/// Number of slots of a row.
+[[nodiscard]] inline int slots_of(const ResponseFactors::Row& row) {
+  int count = 0;
+  for (const int slot : row.slot) count += slot != ResponseFactors::no_slot ? 1 : 0;
+  return count;
 }
 
 /// Entry of W on its diagonal, of a row.
@@ -36,7 +35,7 @@ namespace carom {
   return sum;
 }
 
-/// The same of two rows that share_two_slots().
+/// The same of both rows of a contact of two slots.
 [[nodiscard]] inline std::array<double, 2> diagonal_of_both(const ResponseFactors& factors,
                                                             const ResponseFactors::Row* rows) {
   constexpr std::size_t columns = ResponseFactors::columns;
@@ -50,22 +49,25 @@ namespace carom {
   return {along(rows[0].h.data()), along(rows[1].h.data())};
 }
 
-/// H u + c along all rows. \param velocity u, three numbers a slot \param added c, by row
-/// \param out by row
+/// H u + c along all rows of a grouped problem. \param velocity u, three numbers a slot \param added c, by
+/// row \param out by row
 inline void along_all_rows(const ResponseFactors& factors, std::span<const double> velocity,
                            std::span<const double> added, std::span<double> out) {
   constexpr std::size_t columns = ResponseFactors::columns;
   const auto of_slot = [&](int slot) { return velocity.data() + columns * static_cast<std::size_t>(slot); };
+  const ResponseFactors::Row* const rows = factors.rows.data();
   const std::size_t count = factors.rows.size();
   for (std::size_t r = 0; r < count; ++r) {
-    const ResponseFactors::Row& row = factors.rows[r];
-    if (r + 1 < count && share_two_slots(row, factors.rows[r + 1])) {  // velocities are read once
-      const double *const n = row.h.data(), *const t = factors.rows[r + 1].h.data();
+    const ResponseFactors::Row& row = rows[r];
+    if (row.paired == 2) {  // velocities are read once
+      const double *const n = row.h.data(), *const t = rows[r + 1].h.data();
       const double *const u = of_slot(row.slot[0]), *const w = of_slot(row.slot[1]);
       const double x = u[0], y = u[1], spin = u[2], a = w[0], b = w[1], c = w[2];
-      out[r] = (0.0 + n[0] * x + n[1] * y + n[2] * spin + n[3] * a + n[4] * b + n[5] * c) + added[r];
+      const double along_n = n[0] * x + n[1] * y + n[2] * spin + n[3] * a + n[4] * b + n[5] * c;
+      const double along_t = t[0] * x + t[1] * y + t[2] * spin + t[3] * a + t[4] * b + t[5] * c;
+      out[r] = along_n + added[r];
       ++r;
-      out[r] = (0.0 + t[0] * x + t[1] * y + t[2] * spin + t[3] * a + t[4] * b + t[5] * c) + added[r];
+      out[r] = along_t + added[r];
       continue;
     }
     double sum = 0.0;

@@ -69,7 +69,7 @@ struct PlanarAnswer {
   if (a.p_n <= mode_threshold * largest_p || a.p_n * a.trace <= mode_threshold * largest_b) {
     return ContactMode::open;
   }
-  const double velocity_scale = std::max({std::abs(a.xi_n), std::abs(a.xi_t), largest_b});
+  const double velocity_scale = std::max(std::max(std::abs(a.xi_n), std::abs(a.xi_t)), largest_b);
   if (std::abs(a.xi_t) <= mode_threshold * velocity_scale ||
       std::abs(a.p_t) < (1.0 - mode_threshold) * a.friction * a.p_n) {
     return ContactMode::stick;

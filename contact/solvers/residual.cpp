@@ -76,10 +76,8 @@ public:
     least_trace_ = largest * negligible_trace;
     of_immovable_ = largest > 0.0 ? 1.0 / largest : 1.0;
   }
-  [[nodiscard]] double of(const RowGroup& group) const {
-    const double own = group_trace(problem_, group);
-    return own > least_trace_ ? 1.0 / own : of_immovable_;
-  }
+  [[nodiscard]] double of(const RowGroup& group) const { return of_trace(group_trace(problem_, group)); }
+  [[nodiscard]] double of_trace(double own) const { return own > least_trace_ ? 1.0 / own : of_immovable_; }
 
 private:
   const ContactProblem& problem_;
@@ -110,15 +108,17 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
   // A NaN anywhere makes P* or a distance infinite, or is caught by the comparison below.
   double scale = 0.0;
   Residual worst;
-  for (std::size_t g = 0; g < problem.groups().size(); ++g) {
-    const RowGroup& group = problem.groups()[g];
-    const double rho = steps.of(group);
+  const std::span<const RowGroup> groups = problem.groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const RowGroup& group = groups[g];
     const auto first = static_cast<std::size_t>(group.first);
     double error = 0.0;
     if (is_planar_contact(problem, group)) {
+      const double rho = steps.of_trace(problem.diagonal(group.first) + problem.diagonal(group.first + 1));
       error = planar_distance(problem.sets()[first + 1].coefficient, &impulse[first],
                               &problem.vector()[first], &xi[first], rho, scale);
     } else {
+      const double rho = steps.of(group);
       for (std::size_t i = first; i < first + static_cast<std::size_t>(group.size); ++i) {
         scale = larger_magnitude(scale, impulse[i]);
         scale = larger_magnitude(scale, problem.vector()[i] * rho);

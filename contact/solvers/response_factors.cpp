@@ -78,16 +78,22 @@ void ResponseFactors::respond(std::span<const double> impulse, std::vector<doubl
   const double* p = impulse.data();
   for (const Row* row = rows.data(); row != end;) {
     // The two rows of a contact reach the same bodies, which are read and written once.
-    const bool paired = row + 1 != end && share_slots(row[0], row[1]);
-    const Row& other = paired ? row[1] : row[0];
+    const bool paired = row->paired > 0;
+    const double *const h = row->h.data(), *const g = row[paired ? 1 : 0].h.data();
     const double first = p[0], second = paired ? p[1] : 0.0;
-    for (std::size_t i = 0; i < most_slots && row->slot[i] != no_slot; ++i) {
-      push(&row->h[columns * i], &other.h[columns * i], first, second, slot_of(row->slot[i]));
+    if (row->paired == 2) {  // the usual case, without a loop
+      push(h, g, first, second, slot_of(row->slot[0]));
+      push(h + columns, g + columns, first, second, slot_of(row->slot[1]));
+    } else {
+      for (std::size_t i = 0; i < most_slots && row->slot[i] != no_slot; ++i) {
+        push(h + columns * i, g + columns * i, first, second, slot_of(row->slot[i]));
+      }
     }
     row += paired ? 2 : 1;
     p += paired ? 2 : 1;
   }
-  for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] *= inverse_mass[k];
+  const double* const inverse = inverse_mass.data();
+  for (std::size_t k = 0, size = velocity.size(); k < size; ++k) u[k] *= inverse[k];
   if (!any_bound()) return;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     for (const Answer& answer : answers(row)) {

@@ -24,6 +24,8 @@ struct CAROM_API ResponseFactors {
   /// A row of H: blocks of three numbers, for the slots that are in use. Those come first, each once.
   struct Row {
     std::array<int, std::size_t{most_slots}> slot{no_slot, no_slot, no_slot};
+    int paired = 0;  ///< slots, of the first row of a contact, whose other row is the next; else 0. Of a
+                     ///< grouped problem
     std::array<double, std::size_t{most_slots * columns}> h{};
   };
 
@@ -47,6 +49,7 @@ struct CAROM_API ResponseFactors {
   std::vector<Row> rows;
   Bound bound;
   double largest_trace = 0.0;  ///< of W over the rows of a group (planar_certificate.h); of a grouped problem
+  bool any_held = false;       ///< W has a zero on its diagonal; likewise
 
   /// Sizes the arrays, all numbers zero.
   void reset(int row_count, int slot_count);

@@ -41,8 +41,13 @@ struct ContactAnswer {
   const double* before;
   const double* impulses;
   ContactMode mode;
-  Outcome outcome;
   double residual;
+};
+
+/// What all contacts and limits that are booked together have in common.
+struct CommonAnswer {
+  double time;  // [s]
+  Outcome outcome;
   std::string_view solver;
   double restitution_factor;
 };
@@ -50,10 +55,10 @@ struct ContactAnswer {
 /// Books contacts and limits. Most problems have one: nothing is made ready for others.
 class ContactBooking {
 public:
-  /// \param after velocities at the end as contact sees them \param time when that is [s]
-  ContactBooking(const Assembly& assembly, const double* after, double time, const StepInput& in,
-                 StepResult& result)
-      : assembly_(assembly), after_(after), time_(time), in_(in), result_(result) {}
+  /// \param after velocities at the end as contact sees them
+  ContactBooking(const Assembly& assembly, const double* after, const CommonAnswer& common,
+                 const StepInput& in, StepResult& result)
+      : assembly_(assembly), after_(after), common_(common), in_(in), result_(result) {}
 
   void book(const Constraint& at, const ContactAnswer& answer, double capture_speed, BookedWork& work) const {
     result_.fetch_records(ahead);
@@ -66,7 +71,7 @@ public:
     ContactRecord& entry = result_.next_record();
     entry.mode = answer.mode;
     // Else an impact within the step, or contact up to it.
-    if (!(time_ < in_.end_time)) result_.contact_modes.emplace_back(at.key, entry.mode);
+    if (!(common_.time < in_.end_time)) result_.contact_modes.emplace_back(at.key, entry.mode);
     entry.impact = impact;
     write_place(at, entry);
     write_answer(answer, entry);
@@ -78,8 +83,8 @@ private:
   /// Which contact it is, and where.
   void write_place(const Constraint& at, ContactRecord& entry) const {
     const BodySlot body = assembly_.layout()->bodies()[at.body()];
-    entry.key = at.key;
     set_parties(at, assembly_, entry);
+    entry.key = at.key;
     entry.directions = at.rows;
     entry.gap = at.gap;
     entry.point = entry.normal = {};
@@ -97,11 +102,11 @@ private:
   /// When it acted, and how its problem was solved. The rest of the note is of whole impacts, and of rows
   /// that come behind.
   void write_answer(const ContactAnswer& answer, ContactRecord& entry) const {
-    entry.time = time_;
-    entry.outcome = answer.outcome;
+    entry.time = common_.time;
+    entry.outcome = common_.outcome;
     entry.residual = answer.residual;
-    entry.solver = answer.solver;
-    entry.restitution_factor = answer.restitution_factor;
+    entry.solver = common_.solver;
+    entry.restitution_factor = common_.restitution_factor;
     entry.energy_gain = entry.rolling_moment = 0.0;
     entry.cut_sequence = entry.worst = false;
   }
@@ -146,7 +151,7 @@ private:
 
   const Assembly& assembly_;
   const double* after_;
-  double time_;
+  CommonAnswer common_;
   const StepInput& in_;
   StepResult& result_;
 };
@@ -187,23 +192,23 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   BookedWork work;
   const std::size_t first = result_.recorded;
   const bool is_swept = problem.problem().is_factored();
-  const ContactBooking booking(*assembly_, after, time, in, result_);
   const ContactReport& report = problem.report();
+  const ContactBooking booking(
+      *assembly_, after, {time, report.outcome, report.solver, problem.restitution_factor()}, in, result_);
   const std::span<const Constraint> constraints = problem.constraints();
+  const std::span<const ContactMode> modes = problem.modes();
+  const double *const before = problem.before().data(), *const impulses = problem.impulses().data();
   for (std::size_t contact = 0; contact < constraints.size(); ++contact) {
     const Constraint& at = constraints[contact];
     const auto row = static_cast<std::size_t>(problem.first_row(contact));
-    if (is_swept) keep_impulses(at, problem.impulses().data() + row, result_.contacts);
+    if (is_swept) keep_impulses(at, impulses + row, result_.contacts);
     if (at.type == ConstraintType::rolling) {
       book_rolling(problem, contact, after, work.sum);
     } else if (at.has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work.sum);
     } else {
       if (is_swept) fetch_contact_ahead(constraints, contact + ahead);
-      booking.book(at,
-                   {problem.before().data() + row, problem.impulses().data() + row, problem.modes()[contact],
-                    report.outcome, report.residual, report.solver, problem.restitution_factor()},
-                   capture_speed_, work);
+      booking.book(at, {before + row, impulses + row, modes[contact], report.residual}, capture_speed_, work);
     }
   }
   tally(problem, static_cast<int>(result_.recorded - first));
@@ -223,15 +228,13 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
 void StepBalance::book_lone(const LoneContacts& contacts, const double* after, const StepInput& in,
                             const StepTrial& trial) {
   constexpr std::string_view solver = solver_names[static_cast<std::size_t>(SolverId::single_contact)];
-  const ContactBooking booking(*assembly_, after, in.end_time, in, result_);
+  const ContactBooking booking(*assembly_, after, {in.end_time, Outcome::solved, solver, 1.0}, in, result_);
   const std::span<const Constraint> constraints = contacts.constraints();
   double worst = result_.tally.worst_residual;
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     const LoneAnswer& answer = contacts.answers()[i];
     BookedWork work;
-    booking.book(constraints[i],
-                 {answer.before.data(), answer.impulse.data(), answer.mode, Outcome::solved, answer.residual,
-                  solver, 1.0},
+    booking.book(constraints[i], {answer.before.data(), answer.impulse.data(), answer.mode, answer.residual},
                  capture_speed_, work);
     worst = std::max(worst, answer.residual);
     if (!(work.sum.gain > 0.0)) continue;
