@@ -61,11 +61,12 @@ void add(CheckpointWriter& out, const JointHistory& history) {
 
 void add(CheckpointWriter& out, const ContactHistory& history) {
   out.add(history.step);
-  out.add(std::uint64_t{history.impulses.size()});
-  for (std::size_t i = 0; i < history.impulses.size(); ++i) {
+  out.add(std::uint64_t{history.starts.size()});
+  for (std::size_t i = 0; i < history.starts.size(); ++i) {
     add(out, history.contacts.keys()[i].a);
     add(out, history.contacts.keys()[i].b);
-    for (const double impulse : history.impulses[i]) out.add(impulse);
+    for (const double impulse : history.starts[i].impulse) out.add(impulse);
+    out.add(history.starts[i].kept);
   }
 }
 
@@ -233,17 +234,19 @@ void read_joint_history(CheckpointReader& in, std::size_t velocities, JointHisto
   }
 }
 
-void read_contacts(CheckpointReader& in, ContactHistory& history) {
+void read_contacts(CheckpointReader& in, int version, ContactHistory& history) {
   double step = 0.0;
   in.get(step);
   history.start(step);
   for (std::size_t left = in.count(); left > 0; --left) {
     ConstraintKey key;
-    std::array<double, 2> impulse{};
+    SweepStart start;
     get(in, key.a);
     get(in, key.b);
-    for (double& number : impulse) in.get(number);
-    history.add(key, impulse);
+    for (double& number : start.impulse) in.get(number);
+    if (version >= 12) in.get(start.kept);
+    if (start.kept < 0) in.damaged("a contact was kept for a negative number of steps");
+    history.add(key, start);
   }
   history.contacts.finish();
 }
@@ -324,7 +327,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   read_rhythms(in, other.rhythms);
   if (version >= 7) {
     read_joint_history(in, state.v.size(), other.joints);
-    read_contacts(in, other.contacts);
+    read_contacts(in, version, other.contacts);
   }
   if (version >= 11) in.get(other.steps_owed);
   in.finish();

@@ -7,29 +7,54 @@
 #include <carom/core/constraint_table.h>
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace carom {
 
+/// Where sweeps over a contact start.
+struct SweepStart {
+  std::array<double, 2> impulse{};  ///< along its rows [N s]
+  int kept = 0;                     ///< steps in a row whose answer it was as it is
+
+  friend bool operator==(const SweepStart&, const SweepStart&) = default;
+};
+
+/// Where sweeps over a contact start after a step that started from `last` and found an impulse. Impulses
+/// that miss those of rest by a little change the velocities by the same amount in each step. If they are
+/// good enough for m steps, those of the step that corrects them undo m + 1 such changes at once, and one of
+/// these alone is missing for rest: the next step starts from there, or it would have to undo m of them
+/// again.
+[[nodiscard]] inline SweepStart next_start(const SweepStart& last, const std::array<double, 2>& found) {
+  constexpr std::array<double, 2> nothing{};
+  if (found == nothing) return {found, 0};  // open: when it closes, its impulse is a new one
+  if (last.impulse == found) return {found, last.kept + 1};
+  const double part = 1.0 / (1.0 + last.kept);
+  const auto between = [&](std::size_t row) {
+    return last.impulse[row] + part * (found[row] - last.impulse[row]);
+  };
+  return last.kept == 0 ? SweepStart{found, 0} : SweepStart{{between(0), between(1)}, 0};
+}
+
 /// Contacts and their impulses.
 struct ContactHistory {
-  double step = 0.0;                            ///< length of their step [s]
-  ConstraintTable contacts;                     ///< by key
-  std::vector<std::array<double, 2>> impulses;  ///< along their rows, in the same order [N s]
+  double step = 0.0;               ///< length of their step [s]
+  ConstraintTable contacts;        ///< by key
+  std::vector<SweepStart> starts;  ///< in the same order
 
   /// Forgets all contacts. \param length of the step whose impulses are to be added [s]
   void start(double length) {
     step = length;
     if (empty()) return;
     contacts.clear();
-    impulses.clear();
+    starts.clear();
   }
   /// True if there are no contacts.
-  [[nodiscard]] bool empty() const { return impulses.empty(); }
+  [[nodiscard]] bool empty() const { return starts.empty(); }
   /// Adds a contact of that step.
-  void add(const ConstraintKey& key, const std::array<double, 2>& impulse) {
+  void add(const ConstraintKey& key, const SweepStart& start) {
     contacts.add(key);
-    impulses.push_back(impulse);
+    starts.push_back(start);
   }
 };
 

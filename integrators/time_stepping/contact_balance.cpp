@@ -156,10 +156,27 @@ private:
   StepResult& result_;
 };
 
-/// Keeps the impulses of a constraint, from which the next step starts. \param impulses by row
-void keep_impulses(const Constraint& at, const double* impulses, ContactHistory& out) {
-  out.add(at.key, {impulses[0], at.rows > 1 ? impulses[1] : 0.0});
-}
+/// Keeps the impulses of constraints, from which the next step starts.
+class StartKeeper {
+public:
+  /// \param last of the step before \param out of this one
+  StartKeeper(const ContactHistory& last, ContactHistory& out)
+      : last_(last), as_long_(last.step == out.step), out_(out) {}
+  /// \param impulses by row
+  void keep(const Constraint& at, const double* impulses) {
+    const std::array<double, 2> found{impulses[0], at.rows > 1 ? impulses[1] : 0.0};
+    const Index known = as_long_ ? last_.contacts.find(at.key, next_) : none;
+    if (known == none) return out_.add(at.key, {found, 0});
+    next_ = known + 1;
+    out_.add(at.key, next_start(last_.starts[known], found));
+  }
+
+private:
+  const ContactHistory& last_;
+  bool as_long_;
+  ContactHistory& out_;
+  Index next_ = 0;  // most contacts are those of the step before, in the same order
+};
 
 /// Marks where the residual of a problem is taken, unless that is at friction in a joint.
 /// \param records of its contacts and limits
@@ -198,10 +215,11 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   const std::span<const Constraint> constraints = problem.constraints();
   const std::span<const ContactMode> modes = problem.modes();
   const double *const before = problem.before().data(), *const impulses = problem.impulses().data();
+  StartKeeper starts(in.companion.contacts, result_.contacts);
   for (std::size_t contact = 0; contact < constraints.size(); ++contact) {
     const Constraint& at = constraints[contact];
     const auto row = static_cast<std::size_t>(problem.first_row(contact));
-    if (is_swept) keep_impulses(at, impulses + row, result_.contacts);
+    if (is_swept) starts.keep(at, impulses + row);
     if (at.type == ConstraintType::rolling) {
       book_rolling(problem, contact, after, work.sum);
     } else if (at.has_dry_friction()) {

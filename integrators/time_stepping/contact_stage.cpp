@@ -24,7 +24,7 @@ public:
       const Index known = before_.contacts.find(constraint.key, next_);
       if (known != none) next_ = known + 1;
       for (std::size_t row = 0; row < static_cast<std::size_t>(constraint.rows); ++row) {
-        *impulses++ = known == none ? 0.0 : longer * before_.impulses[known][row];
+        *impulses++ = known == none ? 0.0 : longer * before_.starts[known].impulse[row];
       }
     }
   }
