@@ -132,7 +132,7 @@ bool GroundContacts::find_near(Range bodies, const CentreRun& centres, const Con
   const bool bare = centres.points == none;
   if (lasting != nullptr &&
       (bare ? lasting->any_centre(bodies) : shapes_.any_moves() || lasting->keeps_pressed())) {
-    near.fill(all_shapes);
+    std::fill_n(near.begin(), bodies.size(), all_shapes);
     return true;
   }
   std::fill_n(near.begin(), bodies.size(), 0);
@@ -265,7 +265,7 @@ void GroundContacts::find_among(Range components, const ContactQuery& query, Out
     for_parts(centres.bodies, PointRow::most, [&](Range part) {
       ShapesOfEach near;
       if (part.size() <= hardly_any) {
-        near.fill(all_shapes);
+        std::fill_n(near.begin(), part.size(), all_shapes);
       } else if (!find_near(part, centres, query, near)) {
         return;
       }

@@ -156,7 +156,8 @@ TEST_F(Checkpoint, ContinuesBitForBitWithImpactsAtTheStartOfSteps) {
   }
 }
 
-// Where sweeps over the contacts of a pile start depends on how many steps their impulses were good enough for.
+// Where sweeps over the contacts of a pile start depends on how many steps their impulses were good enough
+// for.
 TEST_F(Checkpoint, ContinuesBitForBitInAPileAtRest) {
   System pile;
   scenes::add_discs(pile, {.count = 60, .width = 0.8});

@@ -202,11 +202,11 @@ TEST(LargeProblemCases, EverySetOfAPlanarRow) {
   problem.reset_factors(5, 3);
   problem.factors().inverse_mass = {1.0, 1.0, 2.0, 0.5, 0.5, 1.0, 0.25, 0.25, 0.0};
   auto& rows = problem.factors().rows;
-  rows[0] = {{0, 1, 2}, {1.0, 0.5, 0.2, -1.0, 0.3, 0.4, 0.2, 0.1, 0.0}};
-  rows[1] = {{1, -1, -1}, {0.0, 1.0, 0.3}};
-  rows[2] = {{0, 2, -1}, {0.3, 1.0, 0.0, 0.1, -1.0, 0.0}};
-  rows[3] = {{0, 1, -1}, {0.0, 1.0, 0.1, 0.0, -1.0, 0.2}};
-  rows[4] = {{0, 1, -1}, {1.0, 0.0, 0.3, -1.0, 0.0, 0.4}};
+  rows[0] = {.slot = {{0, 1, 2}}, .h = {{1.0, 0.5, 0.2, -1.0, 0.3, 0.4, 0.2, 0.1, 0.0}}};
+  rows[1] = {.slot = {{1, -1, -1}}, .h = {{0.0, 1.0, 0.3}}};
+  rows[2] = {.slot = {{0, 2, -1}}, .h = {{0.3, 1.0, 0.0, 0.1, -1.0, 0.0}}};
+  rows[3] = {.slot = {{0, 1, -1}}, .h = {{0.0, 1.0, 0.1, 0.0, -1.0, 0.2}}};
+  rows[4] = {.slot = {{0, 1, -1}}, .h = {{1.0, 0.0, 0.3, -1.0, 0.0, 0.4}}};
   problem.sets()[0] = {.kind = SetKind::interval, .lower = -0.2, .upper = 0.1};
   problem.sets()[1] = {.kind = SetKind::half_line};
   problem.sets()[2] = {.kind = SetKind::interval, .lower = -5.0, .upper = 5.0};
@@ -244,8 +244,8 @@ TEST(LargeProblemCases, AHubOfManyContacts) {
   for (int c = 0; c < spokes; ++c) {
     const double angle = 2.0 * 3.14159265358979 * c / spokes, x = std::cos(angle), y = std::sin(angle);
     const auto first = static_cast<std::size_t>(2 * c);
-    problem.factors().rows[first] = {{c + 1, 0, -1}, {x, y, 0.0, -x, -y, 0.0}};
-    problem.factors().rows[first + 1] = {{c + 1, 0, -1}, {y, -x, 1.0, -y, x, 1.0}};
+    problem.factors().rows[first] = {.slot = {{c + 1, 0, -1}}, .h = {{x, y, 0.0, -x, -y, 0.0}}};
+    problem.factors().rows[first + 1] = {.slot = {{c + 1, 0, -1}}, .h = {{y, -x, 1.0, -y, x, 1.0}}};
     problem.vector()[first] = -1.0 - 0.5 * x;
     problem.vector()[first + 1] = 0.1;
     problem.sets()[first + 1] = {.kind = SetKind::bounded_interval, .bound = 2 * c, .coefficient = 0.2};

@@ -12,8 +12,8 @@ namespace {
 using carom::next_start;
 using carom::SweepStart;
 
-// One velocity that impulses P change by w (P - p) in a step, p those of rest. Impulses that miss p are kept for
-// `kept` steps; then a step makes the velocity zero.
+// One velocity that impulses P change by w (P - p) in a step, p those of rest. Impulses that miss p are kept
+// for `kept` steps; then a step makes the velocity zero.
 struct Drift {
   double w = 0.5, p = 3.0;  // [1/kg], [N s]
   double velocity = 0.0;    // [m/s]
