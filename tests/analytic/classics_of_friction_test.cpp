@@ -288,7 +288,7 @@ TEST(ClassicsOfFriction, BricksOverhangByTheHarmonicSeries) {
 // A wedge under a load holds by itself if its angle is at most twice that of friction; else it is driven out,
 // while friction acts on both of its faces: with e = (sin - mu cos)/(cos + mu sin) of the angle a it has
 // A = g (e M - mu (M + m))/(m + (e - mu) M tan(a)).
-// In time stepping it was driven out below that angle where rounding had opened its gaps (by 0.7 mm in 0.1 s).
+// In time stepping it was driven out below that angle where rounding had opened its gaps (by 0.3 mm here).
 TEST(ClassicsOfFriction, WedgeHoldsByItsFriction) {
   constexpr double mu = 0.2, end = 0.05, light = 0.1, heavy = 50.0;
   for (const double beyond : {-1e-4, 0.02}) {
