@@ -85,17 +85,18 @@ struct TimeStepping {
   double step = 1e-3;  ///< h > 0 [s]
 
   /// The iteration ends when another sweep would change positions, and h times velocities, by less than this
-  /// (angles times the radius of gyration). At 0 it goes on until the change no longer decreases. Where
-  /// impacts are located, gaps are projected or friction is static, gaps up to this count as closed (1e-12
-  /// at 0): scale it with the unit of length, or with bodies much smaller than 1 mm [m].
+  /// (angles times the radius of gyration). At 0 it goes on until the change no longer decreases. Gaps up to
+  /// this count as closed (1e-12 at 0): scale it with the unit of length, or with bodies much smaller than
+  /// 1 mm [m].
   double tolerance = 1e-12;
   int max_sweeps = 200;  ///< sweeps after which an iteration is given up, >= 2
 
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
   /// on terms of the energy ledger, and whether friction in joints that depends on their force takes the
   /// restitution of the contact; and where impacts are located, which end: a contact that closes more slowly
-  /// does not rebound (e = 0). On nothing else of the motion [m/s]. Of a limit of an angle: its rate times
-  /// the arm k_a k_b/sqrt(k_a^2 + k_b^2), radii of gyration, up to a power of two.
+  /// does not rebound (e = 0); where they are not, how far contacts that pushed in the step before may be
+  /// open and last: this times the step. On nothing else of the motion [m/s]. Of a limit of an angle: its
+  /// rate times the arm k_a k_b/sqrt(k_a^2 + k_b^2), radii of gyration, up to a power of two.
   double capture_speed = 1e-2;
   ImpactRules impact_rules{};  ///< impacts of several contacts, and those that would add energy
 

@@ -55,12 +55,13 @@ StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& o
              ends_at_rounding(options) ? gap_rounding(options) : 0.0,
              options.project_gaps && options.impacts != ImpactTimes::located,
              options.impacts == ImpactTimes::located,
-             sticks(detector_),
+             options.impacts == ImpactTimes::at_step_start || sticks(detector_),
              ends_at_rounding(options) || turning_opens(detector_) || sticks(detector_),
              is_plain(detector_)},
       islands_(assembly) {
-  // A body at rest has its static friction: without the contact that rounding opens it would slide away.
-  if (options.project_gaps || rules_.sticks) rules_.margin = rules_.rounding;
+  // Without the contact that rounding opens a body at rest would fall for a step, and slide away although it
+  // stuck. Where impacts are located its closing is found within the step.
+  if (options.project_gaps || rules_.keeps_slow) rules_.margin = rules_.rounding;
 }
 
 void StepConstraints::allow_rounding(double step) {
@@ -79,9 +80,10 @@ void StepConstraints::place_surfaces(const StepInput& in) {
 
 OpeningSlack StepConstraints::Rules::slack_of(double step) const {
   OpeningSlack openings{slack, slack};
-  if (parting == Parting::is_free) openings.of_pressed = step * capture_speed;
-  // Ground that is accelerated opens contacts by an error of the step; contacts that stick are to stay.
-  if (sticks) openings.of_pressed = std::max(openings.of_pressed, step * capture_speed);
+  // Answers are wrong by more than rounding, and ground that is accelerated opens contacts by an error of the
+  // step.
+  const bool keeps = keeps_slow || parting == Parting::is_free;
+  if (keeps) openings.of_pressed = std::max(slack, step * capture_speed);
   if (keeps_pressed) openings.of_pressed = std::numeric_limits<double>::infinity();
   return openings;
 }

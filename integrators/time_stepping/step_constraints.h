@@ -96,7 +96,7 @@ private:
     double slack;                     // opening of lasting contacts that is none [m]
     bool keeps_pressed;               // contacts with an impulse in the step before last
     bool drifts;                      // contacts of two bodies need their drifts
-    bool sticks;                      // some surface takes more to slip than to slide
+    bool keeps_slow;                  // contacts that pushed in the step before and part slowly
     bool turning;                     // contacts may be opened by turning, or by slack
     bool plain;                       // nothing touches but ground at rest, with laws of sliding alone
     Parting parting = Parting::acts;  // in the last find()

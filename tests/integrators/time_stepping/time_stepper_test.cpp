@@ -206,11 +206,17 @@ TEST(TimeStepper, ContactRecordTellsAll) {
   EXPECT_EQ(simulation.companion().modes[0].first, contact.key);
 }
 
-TEST(TimeStepper, TakesContactsWhoseGapIsNotPositive) {
+TEST(TimeStepper, TakesContactsWhoseGapIsNotPositiveToRounding) {
   const Surface surface{.friction = 0.0, .normal_restitution = 1.0};
   Simulation touching(ball_on_floor({0.0, 0.0}, {0.0, -1.0}, surface), TimeStepping{});
   EXPECT_EQ(touching.step().contacts.size(), 1u);
-  Simulation apart(ball_on_floor({0.0, 5e-324}, {0.0, -1.0}, surface), TimeStepping{});
+  // What lies on something to rounding, up to TimeStepping::tolerance, would fall for a step without it.
+  for (const double gap : {5e-324, 1e-16, 9e-13}) {
+    Simulation resting(ball_on_floor({0.0, gap}, {0.0, 0.0}, surface, 9.81), TimeStepping{});
+    EXPECT_EQ(resting.step().contacts.size(), 1u);
+    EXPECT_NEAR(resting.state().q[1], gap, 1e-18);
+  }
+  Simulation apart(ball_on_floor({0.0, 1.1e-12}, {0.0, -1.0}, surface), TimeStepping{});
   EXPECT_EQ(apart.step().contacts.size(), 0u);  // noticed a step later
   EXPECT_EQ(apart.step().contacts.size(), 1u);
   EXPECT_EQ(apart.state().v[1], 1.0);
