@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace {
@@ -144,7 +145,7 @@ TEST(ClassicsOfImpact, WedgeBilliardOf90DegreesIsTwoBalls) {
                                               .velocity = speed[0] * sides[0] + speed[1] * sides[1]});
       Simulation simulation(system, mode);
       simulation.run_until(end);
-      for (int i = 0; i < 2; ++i) {
+      for (std::size_t i = 0; i < 2; ++i) {
         const double fastest = std::sqrt(speed[i] * speed[i] + 2.0 * fall * place[i]);
         const double since = std::fmod(end - (speed[i] + fastest) / fall, 2.0 * fastest / fall);
         EXPECT_NEAR(simulation.state().position(ball).dot(sides[i]),
