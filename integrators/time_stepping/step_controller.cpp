@@ -22,6 +22,12 @@ bool same_contacts(const StepReport& a, const StepReport& b) {
   return std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(), same);
 }
 
+/// Sorts keys, and leaves each once: how often a contact is hit depends on the step.
+void sort_once(std::vector<ConstraintKey>& keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
 /// Adds the contacts that were hit.
 void add_impacts(const StepReport& report, std::vector<ConstraintKey>& keys) {
   for (const ContactRecord& contact : report.contacts) {
@@ -36,8 +42,7 @@ void find_others(const StepReport& report, const std::vector<ConstraintKey>& hit
   for (const ContactRecord& contact : report.contacts) {
     if (!std::binary_search(hit.begin(), hit.end(), contact.key)) keys.push_back(contact.key);
   }
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  sort_once(keys);
 }
 
 }  // namespace
@@ -176,8 +181,8 @@ bool StepController::same_impacts() {
   if (keys_.hit.empty()) return false;
   add_impacts(first_, keys_.of_halves);
   add_impacts(second_, keys_.of_halves);
-  std::sort(keys_.hit.begin(), keys_.hit.end());
-  std::sort(keys_.of_halves.begin(), keys_.of_halves.end());
+  sort_once(keys_.hit);
+  sort_once(keys_.of_halves);
   if (keys_.hit != keys_.of_halves) return false;
   // What was hit may go on in contact or not.
   find_others(of_whole_, keys_.hit, keys_.of_whole);
