@@ -68,9 +68,10 @@ inline constexpr std::size_t iteration_count = 3;
 /// Steps of varying length. Each step is computed once as a whole and once as two halves; the halves are
 /// kept, and the difference gives the error. Where sliding ends, turns round or begins within a half, the
 /// sliding speed that friction takes or gives too early bounds it too (docs/method.md, section 6). Impacts
-/// are excepted: where the whole step and the halves have different contacts their difference does not
-/// measure the error of the smooth motion; the halves are kept, and StepReport::control says so. So it does
-/// where sliding changes in a step that is the smallest.
+/// are excepted: where the whole step and the halves have different contacts the halves are kept, and
+/// StepReport::control says so; with the same impacts in both if they differ by no more than the tolerance.
+/// So are those in which sliding changes, or something is hit, in a step that is the smallest. Impacts
+/// at_step_start are up to a step late, of which no error tells.
 struct StepControl {
   double tolerance = 1e-6;  ///< > 0, largest error of positions and of h times velocities in a step [m]
   double smallest = 1e-7;   ///< > 0, where the error would ask for less the step fails [s]

@@ -11,12 +11,38 @@ namespace carom {
 
 namespace {
 
+// Of the length that the error allows, for the error of its estimate; and bounds of one change.
+constexpr double caution = 0.9, most_growth = 2.0, most_shrinking = 0.2;
+
 /// Whether the same contacts took part, without an impact.
 bool same_contacts(const StepReport& a, const StepReport& b) {
   const auto same = [](const ContactRecord& x, const ContactRecord& y) {
     return x.key == y.key && !x.impact && !y.impact;
   };
   return std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(), same);
+}
+
+/// Sorts keys, and leaves each once: how often a contact is hit depends on the step.
+void sort_once(std::vector<ConstraintKey>& keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
+/// Adds the contacts that were hit.
+void add_impacts(const StepReport& report, std::vector<ConstraintKey>& keys) {
+  for (const ContactRecord& contact : report.contacts) {
+    if (contact.impact) keys.push_back(contact.key);
+  }
+}
+
+/// Finds the contacts that are not among those hit, ascending, each once.
+void find_others(const StepReport& report, const std::vector<ConstraintKey>& hit,
+                 std::vector<ConstraintKey>& keys) {
+  keys.clear();
+  for (const ContactRecord& contact : report.contacts) {
+    if (!std::binary_search(hit.begin(), hit.end(), contact.key)) keys.push_back(contact.key);
+  }
+  sort_once(keys);
 }
 
 }  // namespace
@@ -61,19 +87,28 @@ void StepController::step(MakeStep make, State& state, Companion& companion, dou
 /// Makes a step, judges it, and finds the length to go on with.
 StepController::Attempt StepController::attempt(MakeStep make, const State& state, const Companion& companion,
                                                 double step, double end) {
-  // Of the length that the error allows, for the error of its estimate; and bounds of one change.
-  constexpr double caution = 0.9, most_growth = 2.0, most_shrinking = 0.2;
   Attempt made;
+  Comparison comparison = Comparison::nothing;
   try {
-    made.compared = try_step(make, state, companion, step, end);
+    comparison = try_step(make, state, companion, step, end);
   } catch (const SolverError&) {
     // A shorter step may succeed; at the smallest the error is the caller's.
     if (step <= options_.control->smallest) throw;
     made.next = most_shrinking * step;
     return made;
   }
+  made.accepted = true;
+  made.next = step;
+  if (comparison == Comparison::error) judge(step, made);
+  if (comparison == Comparison::least_error) judge_across_impacts(step, made);
+  return made;
+}
+
+/// Judges a step without impacts.
+void StepController::judge(double step, Attempt& made) const {
   const double tolerance = options_.control->tolerance;
-  if (made.compared) estimate(step, made);
+  estimate(step, made);
+  made.compared = true;
   const double order = made.changed ? 2.0 : 3.0;  // of the error of one step
   const double factor =
       made.error > 0.0 ? caution * std::pow(tolerance / made.error, 1.0 / order) : most_growth;
@@ -86,7 +121,16 @@ StepController::Attempt StepController::attempt(MakeStep make, const State& stat
   made.next = !made.compared  ? step
               : made.accepted ? step * std::clamp(factor, most_shrinking, most_growth)
                               : step * std::clamp(factor, most_shrinking, caution);
-  return made;
+}
+
+/// Judges a step with the same impacts as its halves: too long for the motion around them, it is tried
+/// shorter. The error that is reported stays unknown.
+void StepController::judge_across_impacts(double step, Attempt& made) const {
+  constexpr double order = 2.0;  // of what an impact within a step leaves
+  const double tolerance = options_.control->tolerance, least = difference(step);
+  if (least <= tolerance || step <= options_.control->smallest) return;
+  made.accepted = false;
+  made.next = step * std::clamp(caution * std::pow(tolerance / least, 1.0 / order), most_shrinking, caution);
 }
 
 void StepController::fail_smallest(double time, double step, double error) const {
@@ -109,9 +153,9 @@ void StepController::fail_short(double time, double step) {
                     std::move(failure));
 }
 
-/// Makes the step at once and in halves. Returns whether the two can be compared.
-bool StepController::try_step(MakeStep make, const State& state, const Companion& companion, double step,
-                              double end) {
+/// Makes the step at once and in halves. Returns what their difference tells.
+StepController::Comparison StepController::try_step(MakeStep make, const State& state,
+                                                    const Companion& companion, double step, double end) {
   whole_.state = state;
   whole_.companion = companion;
   halves_.state = state;
@@ -125,7 +169,28 @@ bool StepController::try_step(MakeStep make, const State& state, const Companion
   const SlidStep second{middle_, modes_of_first_, halves_.state, halves_.companion.modes, second_};
   changed_speed_ = std::max(changed_speed_, slip_changes_->largest_speed(second));
   make(whole_.state, whole_.companion, step, end, of_whole_);
-  return same_contacts(of_whole_, first_) && same_contacts(of_whole_, second_);
+  if (same_contacts(of_whole_, first_) && same_contacts(of_whole_, second_)) return Comparison::error;
+  return same_impacts() ? Comparison::least_error : Comparison::nothing;
+}
+
+/// Whether the whole step and the halves have the same impacts, and the same contacts that last besides.
+bool StepController::same_impacts() {
+  keys_.hit.clear();
+  keys_.of_halves.clear();
+  add_impacts(of_whole_, keys_.hit);
+  if (keys_.hit.empty()) return false;
+  add_impacts(first_, keys_.of_halves);
+  add_impacts(second_, keys_.of_halves);
+  sort_once(keys_.hit);
+  sort_once(keys_.of_halves);
+  if (keys_.hit != keys_.of_halves) return false;
+  // What was hit may go on in contact or not.
+  find_others(of_whole_, keys_.hit, keys_.of_whole);
+  for (const StepReport* half : {&first_, &second_}) {
+    find_others(*half, keys_.hit, keys_.of_halves);
+    if (keys_.of_whole != keys_.of_halves) return false;
+  }
+  return true;
 }
 
 /// Whether the whole step had other modes than one of its halves.

@@ -4,7 +4,7 @@
 /// Steps as long as their error allows. A step of second order is compared with two halves of it: of the
 /// difference one third is the error of the halves, which are kept.
 /// Where sliding ends, turns round or begins in a half, what that adds to the error is bounded as well
-/// (slip_changes.h).
+/// (slip_changes.h). A step with the same impacts in both is short enough for the motion around them.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -33,6 +33,12 @@ public:
   void step(MakeStep make, State& state, Companion& companion, double limit, StepReport& report);
 
 private:
+  /// What the difference of the whole step and the halves tells.
+  enum class Comparison {
+    nothing,      // other contacts, or other impacts
+    least_error,  // the same impacts: when they are, and what follows, is another error
+    error         // the same contacts, no impact
+  };
   /// A step that was tried.
   struct Attempt {
     bool accepted = false;
@@ -43,7 +49,10 @@ private:
   };
   [[nodiscard]] Attempt attempt(MakeStep make, const State& state, const Companion& companion, double step,
                                 double end);
-  bool try_step(MakeStep make, const State& state, const Companion& companion, double step, double end);
+  Comparison try_step(MakeStep make, const State& state, const Companion& companion, double step, double end);
+  void judge(double step, Attempt& made) const;
+  void judge_across_impacts(double step, Attempt& made) const;
+  [[nodiscard]] bool same_impacts();
   [[nodiscard]] bool modes_differ() const;
   [[nodiscard]] double difference(double step) const;
   void estimate(double step, Attempt& made) const;
@@ -55,6 +64,9 @@ private:
     State state;
     Companion companion;
   };
+  struct Keys {
+    std::vector<ConstraintKey> hit, of_whole, of_halves;
+  };
 
   const Assembly* assembly_;
   TimeStepping options_;
@@ -65,6 +77,7 @@ private:
   double changed_speed_ = 0.0;               // SlipChanges::largest_speed() of the halves
   std::optional<SlipChanges> slip_changes_;  // none without control
   StepReport of_whole_, first_, second_;
+  Keys keys_;  // workspace of same_impacts()
 };
 
 }  // namespace carom
