@@ -1,4 +1,5 @@
 #include <carom/contact/detection/ground_contacts.h>
+#include <carom/contact/detection/points_in_order.h>
 
 #include <algorithm>
 #include <bit>
@@ -9,24 +10,6 @@
 namespace carom {
 
 namespace {
-
-/// Walks over the points of one component in step with its bodies.
-class PointsInOrder {
-public:
-  PointsInOrder(const std::vector<BodyFeature>& points, Range range) : points_(points), range_(range) {}
-
-  /// Calls f(number of the point) for those of bodies before `body` that did not come yet.
-  template <class F>
-  void before(Index body, F&& f) {
-    for (; range_.begin < range_.end && points_[range_.begin].body < body; ++range_.begin) f(range_.begin);
-  }
-  /// Leaves out all before a point.
-  void skip_to(Index point) { range_.begin = std::max(range_.begin, point); }
-
-private:
-  const std::vector<BodyFeature>& points_;
-  Range range_;  // still to come
-};
 
 /// A look at so many points together is not worth while.
 constexpr Index hardly_any = 2;

@@ -4,6 +4,7 @@
 #include <carom/contact/contact_point.h>
 #include <carom/contact/contact_velocity.h>
 #include <carom/contact/fetch_contact.h>
+#include <carom/integrators/time_stepping/start_keeper.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 
 #include <algorithm>
@@ -156,32 +157,6 @@ private:
   StepResult& result_;
 };
 
-/// Contacts up to which a few sweeps reach all of a problem, so that next_start() is that of rest. Measured:
-/// piles of 100 to 700 discs gain by it, one of 2,000 was a third slower.
-constexpr std::size_t most_of_rest = 1000;
-
-/// Keeps the impulses of the constraints of a problem, from which the next step starts.
-class StartKeeper {
-public:
-  /// \param last of the step before \param constraints how many \param out of this step
-  StartKeeper(const ContactHistory& last, std::size_t constraints, ContactHistory& out)
-      : last_(last), may_rest_(last.step == out.step && constraints <= most_of_rest), out_(out) {}
-  /// \param impulses by row
-  void keep(const Constraint& at, const double* impulses) {
-    const std::array<double, 2> found{impulses[0], at.rows > 1 ? impulses[1] : 0.0};
-    const Index known = may_rest_ ? last_.contacts.find(at.key, next_) : none;
-    if (known == none) return out_.add(at.key, {found, 0});
-    next_ = known + 1;
-    out_.add(at.key, next_start(last_.starts[known], found));
-  }
-
-private:
-  const ContactHistory& last_;
-  bool may_rest_;
-  ContactHistory& out_;
-  Index next_ = 0;  // most contacts are those of the step before, in the same order
-};
-
 /// Marks where the residual of a problem is taken, unless that is at friction in a joint.
 /// \param records of its contacts and limits
 void mark_worst(const IslandProblem& problem, std::span<ContactRecord> records) {
@@ -219,7 +194,7 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   const std::span<const Constraint> constraints = problem.constraints();
   const std::span<const ContactMode> modes = problem.modes();
   const double *const before = problem.before().data(), *const impulses = problem.impulses().data();
-  StartKeeper starts(in.companion.contacts, constraints.size(), result_.contacts);
+  StartKeeper starts(in.companion.contacts, problem, result_.contacts);
   for (std::size_t contact = 0; contact < constraints.size(); ++contact) {
     const Constraint& at = constraints[contact];
     const auto row = static_cast<std::size_t>(problem.first_row(contact));
