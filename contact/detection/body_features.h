@@ -10,6 +10,8 @@
 #include <carom/core/export.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace carom {
@@ -44,6 +46,14 @@ struct CentreRun {
   Index points = none;    ///< the first of their rounded points, which follow one another; `none`: no extent
   double radius = 0.0;    ///< the largest [m]
   ContactFilter filter{};
+
+  /// Distance of a centre, beyond which no gap of its point is <= `margin` [m].
+  [[nodiscard]] double reach(double margin) const {
+    if (points == none) return margin;
+    // No distance less its radius is missed by the rounding of this sum.
+    constexpr double slack = 4.0 * std::numeric_limits<double>::epsilon();
+    return margin + (radius + slack * (std::abs(margin) + radius));
+  }
 };
 
 /// All features that can touch, ordered by body.

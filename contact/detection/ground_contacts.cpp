@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 namespace carom {
@@ -34,14 +33,6 @@ Constraint& next_of(KeptList<Constraint>& out) {
   Constraint& next = out.next();
   clear_state(next);
   return next;
-}
-
-/// Distance of a centre, beyond which no gap of its point is <= `margin` [m].
-double reach_of(const CentreRun& centres, double margin) {
-  if (centres.points == none) return margin;
-  // No distance less its radius is missed by the rounding of this sum.
-  constexpr double slack = 4.0 * std::numeric_limits<double>::epsilon();
-  return margin + (centres.radius + slack * (std::abs(margin) + centres.radius));
 }
 
 /// Calls f(dimension of space).
@@ -120,7 +111,7 @@ bool GroundContacts::find_near(Range bodies, const CentreRun& centres, const Con
   }
   std::fill_n(near.begin(), bodies.size(), 0);
   const std::uint64_t all_bodies = ~std::uint64_t{0} >> (PointRow::most - bodies.size());
-  const double margin = reach_of(centres, query.margin + (lasting == nullptr ? 0.0 : lasting->slack()));
+  const double margin = centres.reach(query.margin + (lasting == nullptr ? 0.0 : lasting->slack()));
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];
   const PointRow row{query.state.q + slot.q, slot.q_size, bodies.size()};
   const std::span<const Index> touched = laws_.touched_by(material_of(centres));
@@ -133,6 +124,10 @@ bool GroundContacts::find_near(Range bodies, const CentreRun& centres, const Con
         may_be_open ? all_bodies
                     : shapes_.points_within(shape, shapes_.motion(shape, query.places), row, margin);
     any |= within;
+    if (within == all_bodies) {  // bodies in a row on a floor: without a loop over bits
+      for (Index i = 0; i < bodies.size(); ++i) near[i] |= bit_of(place);
+      continue;
+    }
     for (; within != 0; within &= within - 1) {
       near[static_cast<std::size_t>(std::countr_zero(within))] |= bit_of(place);
     }
@@ -171,7 +166,7 @@ std::vector<CentreRow> GroundContacts::centre_rows(double margin) const {
   for (const CentreRun& run : features_.centres()) {
     const BodySlot first = assembly_->layout()->bodies()[run.bodies.begin];
     for (const Index shape : laws_.touched_by(material_of(run))) {
-      rows.push_back({shape, first.q, first.q_size, run.bodies.size(), reach_of(run, margin)});
+      rows.push_back({shape, first.q, first.q_size, run.bodies.size(), run.reach(margin)});
     }
   }
   // Circles around all other points of a body, which places as far away as a hundred million radii round
