@@ -10,12 +10,12 @@
 #include <carom/carom.h>
 
 #include "examples/scenes/discs.h"
+#include "tests/integrators/event_driven/body_scenes.h"
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace {
 
@@ -80,11 +80,6 @@ void pouring(benchmark::State& state) {
   time_steps(state, discs, {.step = step}, 0.75 * end - 0.5);
 }
 
-std::vector<carom::Vec<2>> corners_of(double width, double height) {
-  const double x = 0.5 * width, y = 0.5 * height;
-  return {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
-}
-
 /// Its cost should grow as that of discs on a floor.
 void laden_tray(benchmark::State& state) {
   using namespace carom::planar;
@@ -96,7 +91,7 @@ void laden_tray(benchmark::State& state) {
   system.set_default_law({.friction = 0.5, .normal_restitution = 0.0, .tangential_restitution = 0.0});
   const carom::BodyId tray =
       system.add(RigidBody{.mass = box(count, width, 2.0 * radius), .position = {0.0, -radius}});
-  system.add(Polygon{.body = tray, .vertices = corners_of(width, 2.0 * radius)});
+  system.add(Polygon{.body = tray, .vertices = body_scenes::corners_of(width, 2.0 * radius)});
   system.add(Revolute{.from = {carom::ground, {0.0, -radius}}, .to = tray});
   for (int i = 0; i < count; ++i) {
     const carom::Vec<2> place(pitch * (i - 0.5 * (count - 1)), radius);
@@ -124,7 +119,7 @@ void dominoes(benchmark::State& state) {
                                                       .position = {i * pitch, 0.5 * height},
                                                       .velocity = 0.5 * spin * carom::Vec<2>(height, width),
                                                       .spin = -spin});
-    system.add(Polygon{.body = domino, .vertices = corners_of(width, height)});
+    system.add(Polygon{.body = domino, .vertices = body_scenes::corners_of(width, height)});
   }
   carom::Simulation simulation(system, carom::TimeStepping{.step = 0.1 * step});
   simulation.run_until(from);

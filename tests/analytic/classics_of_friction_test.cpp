@@ -1,5 +1,7 @@
 // Classics of dry friction and of contact that lasts, against their closed forms, in each mode.
 
+#include "tests/integrators/event_driven/body_scenes.h"
+
 #include <carom/carom.h>
 
 #include <gtest/gtest.h>
@@ -12,8 +14,8 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
+using body_scenes::add_box, body_scenes::add_disc, body_scenes::corners_of, body_scenes::g;
 
-constexpr double g = 9.81;
 // Event-driven runs have 1e-9 relative to each unknown in a step; what follows from some ten steps and events
 // is known to this.
 constexpr double by_events = 1e-8;
@@ -26,26 +28,6 @@ std::vector<Mode> modes(double step) {
 }
 
 Surface rough(double friction) { return {.friction = friction, .normal_restitution = 0.0}; }
-
-std::vector<Vec<2>> rectangle(double width, double height) {
-  const double x = 0.5 * width, y = 0.5 * height;
-  return {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
-}
-
-BodyId add_box(System& system, double mass, double width, double height, const Vec<2>& place,
-               MaterialId material = {}) {
-  const BodyId body = system.add(RigidBody{.mass = box(mass, width, height), .position = place});
-  system.add(Polygon{.body = body, .vertices = rectangle(width, height), .material = material});
-  return body;
-}
-
-BodyId add_disc(System& system, double mass, double radius, const Vec<2>& place,
-                const Vec<2>& velocity = {0.0, 0.0}) {
-  const BodyId body = system.add(RigidBody{
-      .mass = disc(mass, radius), .position = place, .velocity = velocity, .spin = -velocity[0] / radius});
-  system.add(Disc{.body = body, .radius = radius});
-  return body;
-}
 
 void push(System& system, BodyId body, const Vec<2>& force) {
   system.add(AppliedForce{.on = body, .force = [force](double) { return force; }});
@@ -120,7 +102,7 @@ TEST(ClassicsOfFriction, DiscRollsOverAnEdgeUntilItSlips) {
   System system;
   system.add(Gravity{{0.0, -g}});
   system.add(Block{.vertices = {{-3.0, 0.0}, {-3.0, -2.0}, {0.0, -2.0}, {0.0, 0.0}}}, rough(mu));
-  add_disc(system, 1.0, r, {-0.05, r}, {speed, 0.0});
+  add_disc(system, 1.0, r, {-0.05, r}, {speed, 0.0}, -speed / r);
   Simulation simulation(system, EventDriven{});
   simulation.run_until(0.75);
   const EventMotion at = first(simulation, EventKind::slip).motions[0];
@@ -150,7 +132,7 @@ TEST(ClassicsOfFriction, WedgeGivesWayUnderABlock) {
     const Vec<2> place = Vec<2>(0.0, height) + 0.3 * down + 0.05 * out;
     const BodyId block =
         system.add(RigidBody{.mass = box(light, 0.2, 0.1), .position = place, .angle = -slope});
-    system.add(Polygon{.body = block, .vertices = rectangle(0.2, 0.1)});
+    system.add(Polygon{.body = block, .vertices = corners_of(0.2, 0.1)});
     Simulation simulation(system, mode);
     simulation.run_until(end);
     const double back = light * g * s * down[0] / inertial * 0.5 * end * end;
@@ -175,8 +157,12 @@ TEST(ClassicsOfFriction, LowerBlockIsDrawnFromUnderTheOther) {
       system.between(floor, wood, rough(below));
       system.between(wood, wood, rough(between));
       system.add(HalfPlane{.normal = {0.0, 1.0}, .material = floor});
-      const BodyId lower = add_box(system, lower_mass, 2.0, 0.2, {0.0, 0.1}, wood);
-      const BodyId upper = add_box(system, upper_mass, 0.3, 0.2, {0.0, 0.3}, wood);
+      const auto add_block = [&](double mass, double width, double y) {
+        const BodyId block = system.add(RigidBody{.mass = box(mass, width, 0.2), .position = {0.0, y}});
+        system.add(Polygon{.body = block, .vertices = corners_of(width, 0.2), .material = wood});
+        return block;
+      };
+      const BodyId lower = add_block(lower_mass, 2.0, 0.1), upper = add_block(upper_mass, 0.3, 0.3);
       push(system, lower, {pull, 0.0});
       Simulation simulation(system, mode);
       simulation.run_until(end);
