@@ -108,19 +108,18 @@ StepController::Attempt StepController::attempt(MakeStep make, const State& stat
 void StepController::judge(double step, Attempt& made) const {
   const double tolerance = options_.control->tolerance;
   estimate(step, made);
-  made.compared = true;
   const double order = made.changed ? 2.0 : 3.0;  // of the error of one step
   const double factor =
       made.error > 0.0 ? caution * std::pow(tolerance / made.error, 1.0 / order) : most_growth;
   if (made.changed && made.error > tolerance && step <= options_.control->smallest) {
     // Sliding that ends at once, whatever the step: no shorter one would tell more.
-    made.compared = made.changed = false;
+    made.changed = false;
     made.error = 0.0;
+    return;
   }
-  made.accepted = !made.compared || made.error <= tolerance;
-  made.next = !made.compared  ? step
-              : made.accepted ? step * std::clamp(factor, most_shrinking, most_growth)
-                              : step * std::clamp(factor, most_shrinking, caution);
+  made.compared = true;
+  made.accepted = made.error <= tolerance;
+  made.next = step * std::clamp(factor, most_shrinking, made.accepted ? most_growth : caution);
 }
 
 /// Judges a step with the same impacts as its halves: too long for the motion around them, it is tried
@@ -184,7 +183,7 @@ bool StepController::same_impacts() {
   sort_once(keys_.hit);
   sort_once(keys_.of_halves);
   if (keys_.hit != keys_.of_halves) return false;
-  // What was hit may go on in contact or not.
+  // A contact that was hit may last afterwards or not.
   find_others(of_whole_, keys_.hit, keys_.of_whole);
   for (const StepReport* half : {&first_, &second_}) {
     find_others(*half, keys_.hit, keys_.of_halves);

@@ -33,7 +33,7 @@ public:
   void step(MakeStep make, State& state, Companion& companion, double limit, StepReport& report);
 
 private:
-  /// What the difference of the whole step and the halves tells.
+  /// Meaning of the difference of the whole step and the halves.
   enum class Comparison {
     nothing,      // other contacts, or other impacts
     least_error,  // the same impacts: when they are, and what follows, is another error
