@@ -245,7 +245,9 @@ void read_contacts(CheckpointReader& in, int version, ContactHistory& history) {
     get(in, key.b);
     for (double& number : start.impulse) in.get(number);
     if (version >= 12) in.get(start.kept);
-    if (start.kept < 0) in.damaged("a contact was kept for a negative number of steps");
+    if (start.kept < 0 || start.kept > SweepStart::most_kept) {
+      in.damaged("the impulses of a contact were kept for an impossible number of steps");
+    }
     history.add(key, start);
   }
   history.contacts.finish();

@@ -6,8 +6,8 @@
 
 #include <carom/core/constraint_table.h>
 
+#include <algorithm>
 #include <array>
-#include <cstddef>
 #include <vector>
 
 namespace carom {
@@ -15,7 +15,10 @@ namespace carom {
 /// Where sweeps over a contact start.
 struct SweepStart {
   std::array<double, 2> impulse{};  ///< along its rows [N s]
-  int kept = 0;                     ///< steps in a row whose answer it was as it is
+  int kept = 0;                     ///< steps in a row whose answer it was as it is, up to `most_kept`
+
+  /// As good as any more: an int would end after some hours of rest.
+  static constexpr int most_kept = 1'000'000;
 
   friend bool operator==(const SweepStart&, const SweepStart&) = default;
 };
@@ -28,12 +31,12 @@ struct SweepStart {
 [[nodiscard]] inline SweepStart next_start(const SweepStart& last, const std::array<double, 2>& found) {
   constexpr std::array<double, 2> nothing{};
   if (found == nothing) return {found, 0};  // open: when it closes, its impulse is a new one
-  if (last.impulse == found) return {found, last.kept + 1};
-  const double part = 1.0 / (1.0 + last.kept);
-  const auto between = [&](std::size_t row) {
-    return last.impulse[row] + part * (found[row] - last.impulse[row]);
+  if (last.impulse == found) return {found, std::min(last.kept + 1, SweepStart::most_kept)};
+  if (last.kept == 0) return {found, 0};
+  const auto between = [part = 1.0 / (1.0 + last.kept)](double from, double to) {
+    return from + part * (to - from);
   };
-  return last.kept == 0 ? SweepStart{found, 0} : SweepStart{{between(0), between(1)}, 0};
+  return {{between(last.impulse[0], found[0]), between(last.impulse[1], found[1])}, 0};
 }
 
 /// Contacts and their impulses.

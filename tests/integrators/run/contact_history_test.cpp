@@ -53,6 +53,11 @@ TEST(NextStart, LiesInTheConeBetweenTwoOfIt) {
   EXPECT_EQ(start, (SweepStart{{2.0, -0.25}, 0}));
 }
 
+TEST(NextStart, CountsNoFartherThanAMillionSteps) {
+  const SweepStart full{{1.0, 0.5}, SweepStart::most_kept};
+  EXPECT_EQ(next_start(full, full.impulse), full);
+}
+
 TEST(NextStart, AnOpenContactKeepsNothing) {
   const SweepStart open = next_start({{0.0, 0.0}, 0}, {0.0, 0.0});
   EXPECT_EQ(open.kept, 0);
