@@ -45,7 +45,7 @@ struct ContactAnswer {
   double residual;
 };
 
-/// What all contacts and limits that are booked together have in common.
+/// Common to all contacts and limits that are booked together.
 struct CommonAnswer {
   double time;  // [s]
   Outcome outcome;

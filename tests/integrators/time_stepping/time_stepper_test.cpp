@@ -210,7 +210,8 @@ TEST(TimeStepper, TakesContactsWhoseGapIsNotPositiveToRounding) {
   const Surface surface{.friction = 0.0, .normal_restitution = 1.0};
   Simulation touching(ball_on_floor({0.0, 0.0}, {0.0, -1.0}, surface), TimeStepping{});
   EXPECT_EQ(touching.step().contacts.size(), 1u);
-  // What lies on something to rounding, up to TimeStepping::tolerance, would fall for a step without it.
+  // A ball that lies on the floor to rounding, up to TimeStepping::tolerance, would fall for a step without
+  // it.
   for (const double gap : {5e-324, 1e-16, 9e-13}) {
     Simulation resting(ball_on_floor({0.0, gap}, {0.0, 0.0}, surface, 9.81), TimeStepping{});
     EXPECT_EQ(resting.step().contacts.size(), 1u);
