@@ -55,7 +55,7 @@ void add(CheckpointWriter& out, const JointHistory& history) {
   for (const int known : history.known) out.add(known);
   if (history.known.empty()) return;
   for (const StepCourse* const course : {&history.impulses, &history.velocities, &history.displacements}) {
-    for (std::size_t ago = 0; ago < most_extrapolated; ++ago) out.add(course->numbers(ago));
+    for (std::size_t ago = 0; ago < course->depth(); ++ago) out.add(course->numbers(ago));
   }
 }
 
@@ -217,7 +217,8 @@ void read_rhythms(CheckpointReader& in, std::vector<Rhythm>& rhythms) {
   }
 }
 
-void read_joint_history(CheckpointReader& in, std::size_t velocities, JointHistory& history) {
+void read_joint_history(CheckpointReader& in, int version, std::size_t velocities, JointHistory& history) {
+  constexpr std::size_t depth_before = 6;  // up to version 12, of all courses
   in.get(history.step);
   history.known.resize(in.count());
   for (int& known : history.known) {
@@ -226,11 +227,16 @@ void read_joint_history(CheckpointReader& in, std::size_t velocities, JointHisto
   }
   if (history.known.empty()) return;
   for (StepCourse* const course : {&history.impulses, &history.velocities, &history.displacements}) {
-    for (std::size_t ago = 0; ago < most_extrapolated; ++ago) {
-      in.get(course->numbers(ago));
+    const std::size_t depth = course->depth(), saved = version >= 13 ? depth : depth_before;
+    std::vector<double> forgotten;
+    for (std::size_t ago = 0; ago < saved; ++ago) {
+      std::vector<double>& numbers = ago < depth ? course->numbers(ago) : forgotten;
+      in.get(numbers);
       const std::size_t size = course == &history.impulses ? course->numbers(0).size() : velocities;
-      if (course->numbers(ago).size() != size) in.damaged("its sizes do not fit the model");
+      if (numbers.size() != size) in.damaged("its sizes do not fit the model");
     }
+    for (std::size_t ago = saved; ago < depth; ++ago)
+      course->numbers(ago).assign(course->numbers(0).size(), 0.0);
   }
 }
 
@@ -328,7 +334,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   read_modes(in, other);
   read_rhythms(in, other.rhythms);
   if (version >= 7) {
-    read_joint_history(in, state.v.size(), other.joints);
+    read_joint_history(in, version, state.v.size(), other.joints);
     read_contacts(in, version, other.contacts);
   }
   if (version >= 11) in.get(other.steps_owed);

@@ -1,5 +1,6 @@
 // Problem: the rows of pins, which are most of a chain, at the cost of their arithmetic.
 
+#include <carom/core/numerics/pair.h>
 #include <carom/joints/constraint_part.h>
 
 #include <algorithm>
@@ -15,34 +16,44 @@ struct PinRow {
   const Vec<2>* axes;
   const double* offsets;
   Index axis_stride, offset_stride;
+
+  [[nodiscard]] Pair axis(Index joint) const { return load_pair(axes[joint * axis_stride].data()); }
+  [[nodiscard]] double offset(Index joint) const { return offsets[joint * offset_stride]; }
 };
+
+// Of what does not turn, and of ground, which is the origin.
+constexpr std::array<double, 2> no_rotation{1.0, 0.0}, origin{};
+constexpr Pair zero{};
 
 /// A point of a body by its numbers, which the compiler keeps apart: as vectors they go through memory.
 struct PinPoint {
-  double lever_x = 0.0, lever_y = 0.0;  // from the centre of mass, in the fixed frame
+  double lever_x, lever_y;  // from the centre of mass, in the fixed frame
   double x, y;
 };
 
-/// \param rotation cosine and sine, null of a particle or ground \param centre null of ground
+/// \param rotation cosine and sine
 inline PinPoint pin_point(const double* rotation, const double* centre, const Vec<2>& local) {
-  PinPoint at{.x = local[0], .y = local[1]};
-  if (rotation != nullptr) {
-    at.lever_x = rotation[0] * local[0] - rotation[1] * local[1];
-    at.lever_y = rotation[1] * local[0] + rotation[0] * local[1];
-  }
-  if (centre != nullptr) {
-    at.x = centre[0] + at.lever_x;
-    at.y = centre[1] + at.lever_y;
-  }
-  return at;
+  const double lever_x = rotation[0] * local[0] - rotation[1] * local[1];
+  const double lever_y = rotation[1] * local[0] + rotation[0] * local[1];
+  return {lever_x, lever_y, centre[0] + lever_x, centre[1] + lever_y};
 }
 
-/// Writes the numbers of G for a body that is pushed along (x, y); returns their end.
-inline double* write_push(double x, double y, const PinPoint& at, bool turns, double* out) {
-  out[0] = x;
-  out[1] = y;
+/// Numbers of one or both rows. \tparam Rows 1 or 2
+template <Index Rows>
+inline double* write_rows(Pair of_rows, double* out) {
+  if constexpr (Rows == 2) {
+    store_pair(out, of_rows);
+  } else {
+    *out = of_rows[0];
+  }
+  return out + Rows;
+}
+
+/// Writes the numbers of a row of G for a body that is pushed along it; returns their end.
+inline double* write_push(Pair along, double spin, bool turns, double* out) {
+  store_pair(out, along);
   if (!turns) return out + 2;
-  out[2] = at.lever_x * y - at.lever_y * x + 0.0;  // no negative zero
+  out[2] = spin;
   return out + 3;
 }
 
@@ -78,33 +89,37 @@ void ConstraintPartTable::evaluate_pins(const JointView& at, Range joints,
   const Vec<2>*const from_points = from_point_.data(), *const to_points = to_point_.data();
   const Index from_stride = from_point_.stride(), to_stride = to_point_.stride();
   const double *const q = at.state.q, *const v = at.state.v, *const rotations = at.rotation;
-  const auto number_at = [](const double* numbers, Index place) {
-    return place == none ? nullptr : numbers + place;
+  const auto number_at = [](const double* numbers, Index place, const std::array<double, 2>& else_these) {
+    return place == none ? else_these.data() : numbers + place;
   };
+  const PinRow &one = pins.front(), &other = pins.back();
   double *gap = out.gap, *drift = out.drift, *number = out.jacobian;
   for (Index joint = joints.begin; joint < joints.end; ++joint) {
     const auto& [from, to] = places_[joint];
-    const PinPoint a = pin_point(number_at(rotations, from.rotation), number_at(q, from.q),
-                                 from_points[joint * from_stride]);
-    const PinPoint b =
-        pin_point(number_at(rotations, to.rotation), number_at(q, to.q), to_points[joint * to_stride]);
-    const double between_x = b.x - a.x, between_y = b.y - a.y;
-    double apart_x = 0.0, apart_y = 0.0;
+    const PinPoint a = pin_point(number_at(rotations, from.rotation, no_rotation),
+                                 number_at(q, from.q, origin), from_points[joint * from_stride]);
+    const PinPoint b = pin_point(number_at(rotations, to.rotation, no_rotation), number_at(q, to.q, origin),
+                                 to_points[joint * to_stride]);
+    // Of both rows at once.
+    const Pair first = one.axis(joint), second = other.axis(joint);
+    const Pair x = firsts(first, second), y = seconds(first, second);
+    const Pair offset{one.offset(joint), other.offset(joint)};
+    gap = write_rows<Rows>(x * both(b.x - a.x) + y * both(b.y - a.y) - offset, gap);
     if (drift != nullptr) {
       const double from_spin = from.rotation == none ? 0.0 : v[from.v + 2];
       const double to_spin = to.rotation == none ? 0.0 : v[to.v + 2];
-      apart_x = from_spin * from_spin * a.lever_x - to_spin * to_spin * b.lever_x;
-      apart_y = from_spin * from_spin * a.lever_y - to_spin * to_spin * b.lever_y;
+      const double apart_x = from_spin * from_spin * a.lever_x - to_spin * to_spin * b.lever_x;
+      const double apart_y = from_spin * from_spin * a.lever_y - to_spin * to_spin * b.lever_y;
+      drift = write_rows<Rows>(x * both(apart_x) + y * both(apart_y), drift);
     }
-    for (const PinRow& row : pins) {
-      const Vec<2>& axis = row.axes[joint * row.axis_stride];
-      const double x = axis[0], y = axis[1];
-      *gap++ = x * between_x + y * between_y - row.offsets[joint * row.offset_stride];
-      if (drift != nullptr) *drift++ = x * apart_x + y * apart_y;
-      if (number == nullptr) continue;
-      if (from.v != none) number = write_push(-x, -y, a, from.rotation != none, number);
-      if (to.v != none) number = write_push(x, y, b, to.rotation != none, number);
-    }
+    if (number == nullptr) continue;
+    const Pair from_turn = both(a.lever_x) * -y - both(a.lever_y) * -x + zero;  // no negative zero
+    const Pair to_turn = both(b.lever_x) * y - both(b.lever_y) * x + zero;
+    if (from.v != none) number = write_push(-first, from_turn[0], from.rotation != none, number);
+    if (to.v != none) number = write_push(first, to_turn[0], to.rotation != none, number);
+    if constexpr (Rows == 1) continue;
+    if (from.v != none) number = write_push(-second, from_turn[1], from.rotation != none, number);
+    if (to.v != none) number = write_push(second, to_turn[1], to.rotation != none, number);
   }
 }
 

@@ -1,5 +1,8 @@
 #include <carom/core/numerics/extrapolation.h>
 
+#include <carom/core/numerics/pair.h>
+
+#include <algorithm>
 #include <utility>
 
 namespace carom {
@@ -28,7 +31,44 @@ void extrapolate_by(Range range, const LastNumbers& last, double* guess) {
   }
 }
 
+/// Adds the errors, times weights, that guesses by 1, 2, ... steps would have had at the last one: its
+/// backward differences. \tparam T a number or pair of numbers \param at values of the last steps
+template <std::size_t Steps, class T>
+void add_errors(std::array<T, Steps> at, T weight, std::array<T, Steps>& errors) {
+  for (std::size_t level = 1; level < Steps; ++level) {
+    for (std::size_t k = 0; k + level < Steps; ++k) at[k] -= at[k + 1];
+    errors[level] += weight * magnitude(at[0]);
+  }
+}
+
+template <std::size_t Steps>
+std::size_t best_of(Range range, const LastNumbers& last, const double* weight) {
+  std::array<Pair, Steps> errors{};
+  const auto add = [&](Index i, auto&& read) {
+    std::array<Pair, Steps> at;
+    for (std::size_t k = 0; k < Steps; ++k) at[k] = read(last[k] + i);
+    add_errors<Steps>(at, read(weight + i), errors);
+  };
+  const Index pairs_end = range.begin + range.size() / 2 * 2;
+  for (Index i = range.begin; i < pairs_end; i += 2) add(i, [](const double* at) { return load_pair(at); });
+  if (pairs_end < range.end) add(pairs_end, [](const double* at) { return Pair{*at, 0.0}; });
+  std::size_t best = 1;
+  for (std::size_t steps = 2; steps < Steps; ++steps) {
+    if (errors[steps][0] + errors[steps][1] < errors[best][0] + errors[best][1]) best = steps;
+  }
+  return best;
+}
+
 }  // namespace
+
+std::size_t best_steps(Range range, const LastNumbers& last, std::size_t steps, const double* weight) {
+  std::size_t best = 1;
+  const auto by = [&]<std::size_t... Fewer>(std::index_sequence<Fewer...>) {
+    ((steps == Fewer + 1 ? void(best = best_of<Fewer + 1>(range, last, weight)) : void()), ...);
+  };
+  by(std::make_index_sequence<most_extrapolated>());
+  return best;
+}
 
 void extrapolate(Range range, const LastNumbers& last, std::size_t steps, double* guess) {
   const auto by = [&]<std::size_t... Fewer>(std::index_sequence<Fewer...>) {

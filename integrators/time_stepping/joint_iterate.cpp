@@ -127,7 +127,7 @@ void JointIterate::displace(const std::vector<double>& by, State& state) const {
   });
 }
 
-double JointIterate::violation(const State& end) {
+JointViolation JointIterate::violation(const State& end) {
   const JointConstraints& at_end = rows.at_end();
   const Range q = assembly->components()[component].q;
   double extent = 0.0, gap = 0.0, largest = 0.0;
@@ -137,8 +137,7 @@ double JointIterate::violation(const State& end) {
     gap = std::max(gap, std::abs(at_end.gap(row)));
     if (sizes[row] > 0.0 && !rows.is_mean()) largest = std::max(largest, std::abs(left[row]) / sizes[row]);
   }
-  if (extent > 0.0) largest = std::max(largest, gap / extent);
-  return largest / rounding;
+  return {largest / rounding, extent > 0.0 ? gap / extent / rounding : 0.0};
 }
 
 double JointIterate::largest_displacement() const {

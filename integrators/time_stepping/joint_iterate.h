@@ -11,6 +11,7 @@
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace carom {
@@ -26,6 +27,14 @@ struct JointArrays {
   std::vector<double> before_q, before_v;  ///< the iterate before
   std::vector<double> allowed;             ///< v_{j+1} as contact of bodies with joints sees it
   std::vector<double> lengths;             ///< Assembly::length_scales()
+};
+
+/// How far velocities and positions are from obeying the joints, in units of JointIterate::rounding.
+struct JointViolation {
+  double velocity = 0.0;  ///< of velocities along the rows, of the largest row; 0 along mean rows
+  double gap = 0.0;       ///< of gaps, of the extent of the positions
+  /// The larger.
+  [[nodiscard]] double worst() const { return std::max(velocity, gap); }
 };
 
 /// The iterate of one component. Keeps memory.
@@ -56,9 +65,8 @@ struct CAROM_API JointIterate {
   /// Roundings of the numbers that a row is made of, some room for those of the factors included, relative to
   /// them.
   static constexpr double rounding = 1e-13;
-  /// Distance of velocities and positions from obeying the joints, with the rows at the end there, in units
-  /// of that.
-  [[nodiscard]] double violation(const State& end);
+  /// Distance of velocities and positions from obeying the joints, with the rows at the end there.
+  [[nodiscard]] JointViolation violation(const State& end);
   /// Largest displacement of a body back onto the joints; angles times the radius of gyration [m].
   [[nodiscard]] double largest_displacement() const;
   /// Work of the impulses along the mean velocities [J].

@@ -252,7 +252,7 @@ double JointStage::project_velocities(StepTrial& trial) {
 double JointStage::violation(const StepInput& in, StepTrial& trial) {
   if (guessed_) return untouched_.violation();
   joints_.rows.place_end(in, trial);
-  return joints_.violation(trial.end);
+  return joints_.violation(trial.end).worst();
 }
 
 JointId JointStage::worst_joint(double& violation) const {

@@ -72,6 +72,11 @@ void StepJointRows::place_midpoint(const StepInput& in, StepTrial& trial) const 
   }
 }
 
+void StepJointRows::turn_bodies(const StepInput& in, StepTrial& trial) const {
+  turn(in, component_, trial.end, trial.at_start, trial.at_end);
+  place_midpoint(in, trial);
+}
+
 void StepJointRows::place_end(const StepInput& in, StepTrial& trial) {
   turn(in, component_, trial.end, trial.at_start, trial.at_end);
   end_.update(view_of(trial.end, trial.at_end));

@@ -40,6 +40,8 @@ public:
   /// Brings the rows at the end, and of the reactions, to the iterate, with rotations there and halfway.
   /// Throws SolverError where a prescribed motion is not finite, as the others.
   void place(const StepInput& in, StepTrial& trial);
+  /// Brings the midpoint of the trial and all rotations to the iterate, and leaves the rows where they are.
+  void turn_bodies(const StepInput& in, StepTrial& trial) const;
   /// Brings the midpoint of the trial to the iterate, with the rotations of the rows halfway.
   void place_midpoint(const StepInput& in, StepTrial& trial) const;
   /// Brings the rows at the end alone there, rotations included.

@@ -15,14 +15,14 @@ bool UntouchedJoints::start(const StepInput& in, const StepRule& rule, StepTrial
   const JointHistory& history = in.companion.joints;
   const auto known = static_cast<std::size_t>(history.usable(joints.component, rows_.end, in.step));
   if (known == 0) return false;
-  // Displacements have the rounding of positions, which more steps would magnify.
-  constexpr std::size_t few = 5;
-  history.impulses.guess(rows_, known, joints.impulse.data() - rows_.begin);
-  history.velocities.guess(joints.v(), known, joints.arrays->dv_joints.data());
+  const Range v = joints.v();
+  const std::size_t steps = history.velocities.best_steps(v, known, joints.arrays->lengths.data());
+  history.impulses.guess(rows_, steps, joints.impulse.data() - rows_.begin);
+  history.velocities.guess(v, steps, joints.arrays->dv_joints.data());
   if (rule.is_mean()) {
     joints.clear(joints.arrays->displacement);
   } else {
-    history.displacements.guess(joints.v(), std::min(known, few), joints.arrays->displacement.data());
+    history.displacements.guess(v, steps, joints.arrays->displacement.data());
   }
   joints.find_free_velocities(in, rule, trial);
   joints.move_bodies(in, rule, trial);
@@ -35,22 +35,31 @@ void UntouchedJoints::sweep(const StepInput& in, const StepRule& rule, StepTrial
   // Factors of the first iterate serve all, as they change by what rows turn between two iterates, unless
   // that does not help.
   constexpr int patience = 4;
+  // Rows that turn by no more are left where they are.
+  constexpr double not_seen = 0.1 * JointIterate::rounding;
   JointIterate& joints = *iterate_;
   note_velocities(trial);
   if (sweeps_ >= patience) joints.rows.factor();
   if (sweeps_ > 0) joints.find_free_velocities(in, rule, trial);
   joints.correct_impulses(in, trial);
-  if (turns_rows(in, trial)) {
-    // A second look at the rows alone costs less than another sweep.
+  const double turned = turn_of_rows(in, trial);
+  if (sweeps_ > 0 && turned <= not_seen && violation_.gap <= 1.0 && !rule.is_mean()) {
+    joints.move_bodies(in, rule, trial);
+    joints.displace(joints.arrays->displacement, trial.end);
+    joints.rows.turn_bodies(in, trial);
+  } else {
+    if (turned > JointIterate::rounding) {
+      // A second look at the rows alone costs less than another sweep.
+      joints.move_bodies(in, rule, trial);
+      return_to_joints(in, trial);
+      joints.rows.place_end(in, trial);
+      note_velocities(trial);
+    }
+    joints.correct_impulses(in, trial);
     joints.move_bodies(in, rule, trial);
     return_to_joints(in, trial);
-    joints.rows.place_end(in, trial);
-    note_velocities(trial);
+    joints.rows.place(in, trial);
   }
-  joints.correct_impulses(in, trial);
-  joints.move_bodies(in, rule, trial);
-  return_to_joints(in, trial);
-  joints.rows.place(in, trial);
   violation_ = joints.violation(trial.end);
   ++sweeps_;
   trial.account.swept = true;
@@ -63,16 +72,16 @@ void UntouchedJoints::note_velocities(const StepTrial& trial) {
             iterate_->arrays->before_v.begin() + v.begin);
 }
 
-/// True if the correction turns the rows by more than what is left of velocities may be [rad, or m in place
-/// of it: whether it is exact does not matter to the answer].
-bool UntouchedJoints::turns_rows(const StepInput& in, const StepTrial& trial) const {
+/// What the correction turns the rows by, to be compared with what may be left of velocities [rad, or m in
+/// place of it: whether it is exact does not matter to the answer].
+double UntouchedJoints::turn_of_rows(const StepInput& in, const StepTrial& trial) const {
   const JointArrays& arrays = *iterate_->arrays;
   const Range v = iterate_->v();
   double largest = 0.0;
   for (Index i = v.begin; i < v.end; ++i) {
     largest = std::max(largest, std::abs(trial.free[i] + arrays.dv_joints[i] - arrays.before_v[i]));
   }
-  return 0.5 * in.step * largest > JointIterate::rounding;
+  return 0.5 * in.step * largest;
 }
 
 /// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0, with the rows of the iterate before and the gaps
@@ -98,7 +107,7 @@ SweepChange UntouchedJoints::change(const StepInput& in, const StepTrial& trial)
   JointIterate& joints = *iterate_;
   const JointArrays& arrays = *joints.arrays;
   const Range v = joints.v();
-  const bool obeyed = violation_ <= 1.0;
+  const bool obeyed = violation() <= 1.0;
   SweepChange change;
   const double* now = trial.end.v.data();
   const double* then = arrays.before_v.data();

@@ -26,20 +26,20 @@ public:
   /// Change that another sweep would make where the joints are obeyed, else that the sweep has made.
   [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial);
   /// JointIterate::violation() of the iterate.
-  [[nodiscard]] double violation() const { return violation_; }
+  [[nodiscard]] double violation() const { return violation_.worst(); }
   /// Takes a step down, made by whatever iteration. \param struck something touched: what contact did is of
   /// its own step, and the steps before say nothing
   void record(bool struck, JointHistory& history) const;
 
 private:
   void note_velocities(const StepTrial& trial);
-  [[nodiscard]] bool turns_rows(const StepInput& in, const StepTrial& trial) const;
+  [[nodiscard]] double turn_of_rows(const StepInput& in, const StepTrial& trial) const;
   void return_to_joints(const StepInput& in, StepTrial& trial);
 
   JointIterate* iterate_;
   Range rows_;  // of the component, among all
   int sweeps_ = 0;
-  double violation_ = 0.0;
+  JointViolation violation_;
 };
 
 }  // namespace carom

@@ -51,4 +51,57 @@ TEST(Extrapolation, WritesItsRangeAlone) {
   EXPECT_EQ(guess, (std::vector<double>{-1.0, 4.0, 6.0, -1.0}));
 }
 
+/// Numbers of the last steps of a function of their count, and how many of them the guess should follow.
+template <class F>
+std::size_t best_of(F&& number, std::size_t known, const std::vector<double>& weight) {
+  std::array<std::vector<double>, most_extrapolated> numbers;
+  LastNumbers last{};
+  for (std::size_t ago = 0; ago < known; ++ago) {
+    for (std::size_t i = 0; i < weight.size(); ++i) numbers[ago].push_back(number(30.0 - double(ago), i));
+    last[ago] = numbers[ago].data();  // the others are not read
+  }
+  return best_steps({0, static_cast<Index>(weight.size())}, last, known, weight.data());
+}
+
+TEST(BestSteps, AreAsManyAsAPolynomialNeeds) {
+  for (std::size_t degree = 0; degree + 2 <= most_extrapolated; ++degree) {
+    const auto number = [&](double n, std::size_t i) {
+      return std::pow(n - 30.0, double(degree)) + double(i);  // whole numbers, without rounding
+    };
+    EXPECT_EQ(best_of(number, most_extrapolated, {1.0, 1.0, 1.0}), degree + 1) << "degree " << degree;
+  }
+}
+
+TEST(BestSteps, AreFewWhereNumbersJumpFromStepToStep) {
+  const auto jumps = [](double n, std::size_t) { return std::fmod(n, 2.0) < 0.5 ? 1.0 : -1.0; };
+  EXPECT_EQ(best_of(jumps, most_extrapolated, {1.0, 1.0}), 1U);
+  const auto turns = [](double n, std::size_t i) { return std::sin(2.0 * n + double(i)); };
+  EXPECT_LE(best_of(turns, most_extrapolated, {1.0, 1.0}), 2U);
+}
+
+TEST(BestSteps, AreFewerWhereRoundingIsCoarse) {
+  const auto wave = [](double n, std::size_t i) { return std::sin(0.05 * n + double(i)); };
+  // Differences: 0.05^k of the wave, some 2^k 1e-4 of rounding, which are alike at k = 3.
+  const auto coarse = [&](double n, std::size_t i) { return std::round(wave(n, i) * 1e4) / 1e4; };
+  const std::vector<double> weight(20, 1.0);
+  EXPECT_GE(best_of(wave, most_extrapolated, weight), 8U);
+  EXPECT_GE(best_of(coarse, most_extrapolated, weight), 2U);
+  EXPECT_LE(best_of(coarse, most_extrapolated, weight), 4U);
+}
+
+TEST(BestSteps, CountNumbersByTheirWeight) {
+  const auto number = [](double n, std::size_t i) {
+    return i == 2 ? (std::fmod(n, 2.0) < 0.5 ? 1.0 : -1.0) : n * n;  // the last, without a neighbour, jumps
+  };
+  EXPECT_EQ(best_of(number, most_extrapolated, {1.0, 1.0, 1e-9}), 3U);
+  EXPECT_EQ(best_of(number, most_extrapolated, {1.0, 1.0, 1e3}), 1U);
+}
+
+TEST(BestSteps, AreThoseWhoseGuessCanBeJudged) {
+  const auto line = [](double n, std::size_t) { return n; };
+  EXPECT_EQ(best_of(line, 1, {1.0, 1.0}), 1U);
+  EXPECT_EQ(best_of(line, 2, {1.0, 1.0}), 1U);
+  EXPECT_EQ(best_of(line, 3, {1.0, 1.0}), 2U);
+}
+
 }  // namespace
