@@ -2,32 +2,12 @@
 
 #include <carom/core/numerics/pair.h>
 #include <carom/core/space.h>
+#include <carom/integrators/time_stepping/pair_change.h>
 #include <carom/integrators/time_stepping/step_kernels.h>
 
 namespace carom {
 
 namespace {
-
-/// Change by a sweep, two numbers at a time.
-class PairChange {
-public:
-  void take(Pair difference, Pair number) {
-    difference = magnitude(difference);
-    change_ = larger(difference, change_);
-    size_ = larger(magnitude(number), size_);
-    // A maximum may drop what is no number, a sum keeps it.
-    sum_ += difference;
-  }
-  void add_to(SweepChange& change) const {
-    const double numbers = sum_[0] + sum_[1];
-    for (int lane = 0; lane < 2; ++lane) {
-      change.take(numbers != numbers ? numbers : change_[lane], numbers != numbers ? numbers : size_[lane]);
-    }
-  }
-
-private:
-  Pair change_{}, size_{}, sum_{};
-};
 
 /// One sweep over two numbers. \param half h / 2, \param inverse h / (2 m)
 template <bool Response>
@@ -134,19 +114,19 @@ void sweep_planar_bodies(const BodyMasses& masses, Index count, double step, con
 
 void add_change_of_planar_bodies(const BodyMasses& masses, Index count, double weight, double step,
                                  const LoadArrays& a, SweepChange& change) {
-  SweepChange seen = change;
-  Index at = 0;
-  for (Index body = 0; body < count; ++body) {
+  PairChange seen;
+  const Pair h = both(step), of_loads = both(weight * step);
+  for (Index body = 0, at = 0; body < count; ++body, at += 3) {
     const double radius = masses.gyration_radius[masses.stride * body];
-    const double by_mass = weight * step / masses.mass[masses.stride * body];
-    const double by_inertia = weight * step * radius / masses.inertia[masses.stride * body];
-    for (Index i = 0; i < 3; ++i, ++at) {
-      const double length = i < 2 ? 1.0 : radius;
-      seen.take((i < 2 ? by_mass : by_inertia) * (a.led_to[at] - a.made_with[at]), a.q1[at] * length);
-      seen.take(0.0, step * a.v1[at] * length);
-    }
+    const Pair factor =
+        of_loads / Pair{masses.mass[masses.stride * body], masses.inertia[masses.stride * body]};
+    seen.take(both(factor[0]) * (load_pair(a.led_to + at) - load_pair(a.made_with + at)),
+              larger(magnitude(load_pair(a.q1 + at)), magnitude(h * load_pair(a.v1 + at))));
+    const Index angle = at + 2;
+    seen.take(Pair{factor[1] * radius * (a.led_to[angle] - a.made_with[angle]), 0.0},
+              both(radius) * Pair{a.q1[angle], step * a.v1[angle]});
   }
-  change = seen;
+  seen.add_to(change);
 }
 
 }  // namespace

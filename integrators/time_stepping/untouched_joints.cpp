@@ -1,5 +1,6 @@
 // Problem: a step of a mechanism in the air at the cost of one sweep.
 
+#include <carom/integrators/time_stepping/pair_change.h>
 #include <carom/integrators/time_stepping/untouched_joints.h>
 
 #include <algorithm>
@@ -108,7 +109,6 @@ SweepChange UntouchedJoints::change(const StepInput& in, const StepTrial& trial)
   const JointArrays& arrays = *joints.arrays;
   const Range v = joints.v();
   const bool obeyed = violation() <= 1.0;
-  SweepChange change;
   const double* now = trial.end.v.data();
   const double* then = arrays.before_v.data();
   if (obeyed) {
@@ -118,7 +118,16 @@ SweepChange UntouchedJoints::change(const StepInput& in, const StepTrial& trial)
     then = arrays.dv_joints.data();
   }
   // Positions change by h/2 times this.
-  for (Index i = v.begin; i < v.end; ++i) {
+  PairChange seen;
+  SweepChange change;
+  Index i = v.begin;
+  for (; i + 1 < v.end; i += 2) {
+    const Pair weight = both(in.step) * load_pair(arrays.lengths.data() + i);
+    seen.take(weight * (load_pair(now + i) - load_pair(then + i)),
+              weight * load_pair(trial.end.v.data() + i));
+  }
+  seen.add_to(change);
+  for (; i < v.end; ++i) {
     const double weight = in.step * arrays.lengths[i];
     change.take(weight * (now[i] - then[i]), weight * trial.end.v[i]);
   }
