@@ -190,7 +190,7 @@ void close_gaps(const Assembly& assembly, Index component, JointConstraints& joi
   for (int step = 0;; ++step) {
     evaluate_positions(assembly, component, state.view(), work.evaluation);
     joints.update_and_factor({state.view(), work.evaluation.rotation.data()});
-    for (std::size_t i = 0; i < off.size(); ++i) off[i] = joints.gap(i);
+    for (std::size_t i = 0; i < off.size(); ++i) off[i] = joints.gaps()[i];
     const std::size_t worst = worst_row(off);
     const double left = std::abs(off[worst]), size = largest(state.q, range.q, 1.0);
     if (left <= rounding * size) break;

@@ -50,7 +50,7 @@ void JointConstraints::factor() {
 
 JointRow JointConstraints::row(std::size_t row) const {
   JointRow result = pattern_->row(row, jacobian_.data());
-  result.gap = gap(row);
+  result.gap = gap_[row];
   result.rate = rate(row);
   result.drift = drift_[row];
   return result;

@@ -68,13 +68,13 @@ public:
   void update(const JointView& at);
   /// Factorises with the rows as they are.
   void factor();
-  /// Brings gap() alone to a configuration.
+  /// Brings gaps() alone to a configuration.
   void update_gaps(const JointView& at);
 
   /// A row at the configuration where it was brought last.
   [[nodiscard]] JointRow row(std::size_t row) const;
-  /// Gap of a row.
-  [[nodiscard]] double gap(std::size_t row) const { return gap_[row]; }
+  /// Gaps of all rows.
+  [[nodiscard]] const std::vector<double>& gaps() const { return gap_; }
   /// Rate of a row.
   [[nodiscard]] double rate(std::size_t row) const { return rate_.empty() ? 0.0 : rate_[row]; }
   /// Writes G x + c of all rows.

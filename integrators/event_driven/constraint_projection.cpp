@@ -32,7 +32,7 @@ bool leaves_joints(const JointConstraints& joints, Range q, const MotionSample& 
   memory.multipliers.resize(joints.size());
   joints.residuals(JointLevel::velocity, at.state.v.data(), memory.multipliers.data());
   for (std::size_t row = 0; row < joints.size(); ++row) {
-    if (std::abs(joints.gap(row)) > rounding * extent) return true;
+    if (std::abs(joints.gaps()[row]) > rounding * extent) return true;
     if (std::abs(memory.multipliers[row]) > rounding * speed) return true;
   }
   return false;

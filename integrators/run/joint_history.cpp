@@ -10,9 +10,7 @@ const std::vector<double>& StepCourse::numbers(std::size_t ago) const {
   return steps_[(newest_ + ago) % depth_];
 }
 
-std::vector<double>& StepCourse::numbers(std::size_t ago) {
-  return steps_[(newest_ + ago) % depth_];
-}
+std::vector<double>& StepCourse::numbers(std::size_t ago) { return steps_[(newest_ + ago) % depth_]; }
 
 void StepCourse::go_on(std::size_t size) {
   newest_ = (newest_ + depth_ - 1) % depth_;

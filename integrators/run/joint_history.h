@@ -52,9 +52,9 @@ struct CAROM_API JointHistory {
   /// Likewise of displacements, which have the rounding of positions: more steps would magnify it.
   static constexpr int most_displacements = 5;
 
-  double step = 0.0;         ///< length of the steps [s]
-  std::vector<int> known;    ///< by component, how many of its steps are remembered; empty: none
-  StepCourse impulses{most};  ///< of reactions, by row of all joints [N s, N m s]
+  double step = 0.0;            ///< length of the steps [s]
+  std::vector<int> known;       ///< by component, how many of its steps are remembered; empty: none
+  StepCourse impulses{most};    ///< of reactions, by row of all joints [N s, N m s]
   StepCourse velocities{most};  ///< their changes by these, over all velocities [m/s, rad/s]
   StepCourse displacements{most_displacements};  ///< back onto joints, over all velocities [m, rad]
 

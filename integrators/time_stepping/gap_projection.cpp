@@ -178,7 +178,7 @@ bool GapProjection::is_off(const State& state, const Evaluation& evaluation, dou
   for (JointConstraints* const joints : mechanisms_) {
     joints->update_gaps({state.view(), evaluation.rotation.data()});
     for (std::size_t row = 0; row < joints->size(); ++row) {
-      if (std::abs(joints->gap(row)) > depth) return true;
+      if (std::abs(joints->gaps()[row]) > depth) return true;
     }
   }
   return false;
@@ -193,7 +193,7 @@ void GapProjection::close_joints(const State& state, const Evaluation& evaluatio
     std::fill(towards_.begin() + v.begin, towards_.begin() + v.end, 0.0);
     rows.resize(joints->size());
     joints->residuals(JointLevel::change, displacement_.data(), rows.data());
-    for (std::size_t i = 0; i < joints->size(); ++i) rows[i] = joints->gap(i) - rows[i];
+    for (std::size_t i = 0; i < joints->size(); ++i) rows[i] = joints->gaps()[i] - rows[i];
     joints->solve(rows.data());
     joints->add_response(rows.data(), towards_.data());
   }

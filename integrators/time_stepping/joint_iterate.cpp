@@ -1,5 +1,6 @@
 // Problem: velocities and positions that obey the joints to rounding, one step of Newton's method at a time.
 
+#include <carom/core/numerics/largest_of.h>
 #include <carom/integrators/time_stepping/joint_iterate.h>
 
 #include <algorithm>
@@ -107,7 +108,7 @@ void JointIterate::return_near_singular(const StepInput& in, StepTrial& trial) {
   for (int turn = 0; turn < turns; ++turn) {
     rows.place_end(in, trial);
     rows.factor();
-    for (std::size_t row = 0; row < left.size(); ++row) left[row] = rows.at_end().gap(row);
+    for (std::size_t row = 0; row < left.size(); ++row) left[row] = rows.at_end().gaps()[row];
     rows.solve(left);
     clear(arrays->scratch);
     rows.pushing().add_response(left.data(), arrays->scratch.data());
@@ -130,22 +131,23 @@ void JointIterate::displace(const std::vector<double>& by, State& state) const {
 JointViolation JointIterate::violation(const State& end) {
   const JointConstraints& at_end = rows.at_end();
   const Range q = assembly->components()[component].q;
-  double extent = 0.0, gap = 0.0, largest = 0.0;
-  for (Index i = q.begin; i < q.end; ++i) extent = std::max(extent, std::abs(end.q[i]));
-  at_end.residuals_and_sizes(end.v.data(), left.data(), sizes.data());
-  for (std::size_t row = 0; row < left.size(); ++row) {
-    gap = std::max(gap, std::abs(at_end.gap(row)));
-    if (sizes[row] > 0.0 && !rows.is_mean()) largest = std::max(largest, std::abs(left[row]) / sizes[row]);
+  const double extent = largest_of(q, [&](auto at) { return magnitude(at(end.q.data())); });
+  const Range all{0, static_cast<Index>(left.size())};
+  const double gap = largest_of(all, [&](auto at) { return magnitude(at(at_end.gaps().data())); });
+  double largest = 0.0;
+  if (!rows.is_mean()) {
+    at_end.residuals_and_sizes(end.v.data(), left.data(), sizes.data());
+    largest = largest_of(all, [&](auto at) {  // none where a row is made of zeros
+      return magnitude(at(left.data())) / at(sizes.data());
+    });
   }
   return {largest / rounding, extent > 0.0 ? gap / extent / rounding : 0.0};
 }
 
 double JointIterate::largest_displacement() const {
-  const Range v = this->v();
-  double largest = 0.0;
-  for (Index i = v.begin; i < v.end; ++i)
-    largest = std::max(largest, arrays->lengths[i] * std::abs(arrays->displacement[i]));
-  return largest;
+  return largest_of(v(), [this](auto at) {
+    return at(arrays->lengths.data()) * magnitude(at(arrays->displacement.data()));
+  });
 }
 
 double JointIterate::work(const StepTrial& trial) {

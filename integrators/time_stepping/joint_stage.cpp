@@ -260,7 +260,7 @@ JointId JointStage::worst_joint(double& violation) const {
   JointId worst;
   violation = 0.0;
   for (std::size_t row = 0; row < end.size(); ++row) {
-    const double gap = std::abs(end.gap(row));
+    const double gap = std::abs(end.gaps()[row]);
     if (!(gap > violation)) continue;
     violation = gap;
     worst = end.joint(row);

@@ -11,7 +11,7 @@ namespace carom {
 /// A SweepChange in the making.
 class PairChange {
 public:
-  /// Takes two changes, and the numbers that they are changes of. What is no number among the changes is kept.
+  /// Takes two changes, and the numbers that they are changes of. A change that is no number is kept.
   void take(Pair difference, Pair number) {
     difference = magnitude(difference);
     change_ = larger(difference, change_);

@@ -1,5 +1,6 @@
 // Problem: a step of a mechanism in the air at the cost of one sweep.
 
+#include <carom/core/numerics/largest_of.h>
 #include <carom/integrators/time_stepping/pair_change.h>
 #include <carom/integrators/time_stepping/untouched_joints.h>
 
@@ -77,12 +78,9 @@ void UntouchedJoints::note_velocities(const StepTrial& trial) {
 /// place of it: whether it is exact does not matter to the answer].
 double UntouchedJoints::turn_of_rows(const StepInput& in, const StepTrial& trial) const {
   const JointArrays& arrays = *iterate_->arrays;
-  const Range v = iterate_->v();
-  double largest = 0.0;
-  for (Index i = v.begin; i < v.end; ++i) {
-    largest = std::max(largest, std::abs(trial.free[i] + arrays.dv_joints[i] - arrays.before_v[i]));
-  }
-  return 0.5 * in.step * largest;
+  return 0.5 * in.step * largest_of(iterate_->v(), [&](auto at) {
+           return magnitude(at(trial.free.data()) + at(arrays.dv_joints.data()) - at(arrays.before_v.data()));
+         });
 }
 
 /// One step of Newton's method for g(q_{j+1}, t_{j+1}) = 0, with the rows of the iterate before and the gaps

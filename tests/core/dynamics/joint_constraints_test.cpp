@@ -241,7 +241,7 @@ TEST(JointConstraints, AllRowsAtOnceAreTheRowsOneByOne) {
       joints.add_transposed(multipliers.data(), load.data());
       for (std::size_t r = 0; r < found.size(); ++r) {
         joints.row(r).add_transposed(multipliers[r], expected.data());
-        EXPECT_EQ(joints.row(r).gap, joints.gap(r));
+        EXPECT_EQ(joints.row(r).gap, joints.gaps()[r]);
         EXPECT_EQ(joints.row(r).rate, joints.rate(r));
       }
       for (std::size_t i = 0; i < load.size(); ++i) EXPECT_NEAR(load[i], expected[i], 1e-13) << i;
@@ -265,8 +265,8 @@ TEST(JointConstraints, GapsAloneGoToAConfiguration) {
   joints.project(JointLevel::change, y.data());
   EXPECT_EQ(x, y);
   for (std::size_t r = 0; r < joints.size(); ++r) {
-    EXPECT_EQ(joints.gap(r), fresh.gap(r));
-    EXPECT_NE(joints.gap(r), before.gap(r));
+    EXPECT_EQ(joints.gaps()[r], fresh.gaps()[r]);
+    EXPECT_NE(joints.gaps()[r], before.gaps()[r]);
     EXPECT_EQ(joints.row(r).drift, before.row(r).drift);
   }
 }
@@ -289,7 +289,7 @@ TEST(JointConstraints, AnOldConfigurationIsForgotten) {
   joints.project(JointLevel::acceleration, x.data());
   fresh.project(JointLevel::acceleration, y.data());
   EXPECT_EQ(x, y);
-  for (std::size_t r = 0; r < joints.size(); ++r) EXPECT_EQ(joints.gap(r), fresh.gap(r));
+  for (std::size_t r = 0; r < joints.size(); ++r) EXPECT_EQ(joints.gaps()[r], fresh.gaps()[r]);
 }
 
 }  // namespace
