@@ -20,9 +20,9 @@ bool may_be_alone(const Constraint& at, Index last) {
 
 }  // namespace
 
-/// False of a contact that is not regular.
-bool LoneContacts::solve(const Constraint& at, const BodyMasses& masses, const LoneVelocities& velocity,
-                         LoneAnswer& answer, Response& response, RegularCounts& counts) {
+/// Numbers of its problem. False where a row moves nothing.
+bool LoneContacts::state(const Constraint& at, const BodyMasses& masses, const LoneVelocities& velocity,
+                         LoneAnswer& answer, Response& response, PlanarContact& problem) {
   std::array<double, 4> w;
   one_body::answer_contact(at, masses, response.data(), w.data());
   if (w[0] == 0.0 || w[3] == 0.0) return false;
@@ -30,8 +30,13 @@ bool LoneContacts::solve(const Constraint& at, const BodyMasses& masses, const L
   answer.before = {before[0] - at.surface_velocity[0], before[1] - at.surface_velocity[1]};
   const std::array<double, 2> e{at.law.normal_restitution, at.law.tangential_restitution};
   answer.b = vector_of_contact(at, velocity.free, answer.before.data(), e.data());
-  const CertifiedImpulse found =
-      solve_regular_contact(PlanarContact{w[0], w[1], w[3], answer.b[0], answer.b[1], at.friction});
+  problem = {w[0], w[1], w[3], answer.b[0], answer.b[1], at.friction};
+  return true;
+}
+
+/// False of a contact that is not regular.
+bool LoneContacts::solve(const PlanarContact& problem, LoneAnswer& answer, RegularCounts& counts) {
+  const CertifiedImpulse found = solve_regular_contact(problem);
   if (!found.usable || !(found.residual <= accepted_residual)) return false;
   answer.impulse = {found.impulse.normal, found.impulse.tangential};
   answer.residual = found.residual;
@@ -47,6 +52,7 @@ bool LoneContacts::solve(std::span<const Constraint> constraints, const MassResp
   if (answers_.size() < count) {
     answers_.resize(count);
     responses_.resize(count);
+    problems_.resize(count);
   }
   RegularCounts counts;
   Index last = none;
@@ -56,7 +62,11 @@ bool LoneContacts::solve(std::span<const Constraint> constraints, const MassResp
     last = at.body();
     const BodyMasses own = masses.alone(last);
     if (own.mass == nullptr || own.layout != BodyMasses::Layout::planar_bodies) return false;
-    if (!solve(at, own, velocity, answers_[i], responses_[i], counts)) return false;
+    if (!state(at, own, velocity, answers_[i], responses_[i], problems_[i])) return false;
+  }
+  // Apart, so that the processor takes up the next while divisions of one are under way.
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!solve(problems_[i], answers_[i], counts)) return false;
   }
   for (std::size_t i = 0; i < count; ++i) {
     one_body::add_alone<static_cast<int>(one_body::of_planar_body)>(

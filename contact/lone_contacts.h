@@ -7,6 +7,7 @@
 
 #include <carom/contact/solvers/chain_statistics.h>
 #include <carom/contact/solvers/regular_counts.h>
+#include <carom/contact/solvers/single_contact.h>
 #include <carom/core/constraint.h>
 #include <carom/core/dynamics/body_response.h>
 #include <carom/core/export.h>
@@ -61,13 +62,15 @@ public:
 
 private:
   using Response = std::array<double, 6>;  // M^-1 H^T: of each row three
-  [[nodiscard]] static bool solve(const Constraint& at, const BodyMasses& masses,
+  [[nodiscard]] static bool state(const Constraint& at, const BodyMasses& masses,
                                   const LoneVelocities& velocity, LoneAnswer& answer, Response& response,
-                                  RegularCounts& counts);
+                                  PlanarContact& problem);
+  [[nodiscard]] static bool solve(const PlanarContact& problem, LoneAnswer& answer, RegularCounts& counts);
 
   std::span<const Constraint> constraints_;
   std::vector<LoneAnswer> answers_;
   std::vector<Response> responses_;
+  std::vector<PlanarContact> problems_;
   RegularCounts counts_;
 };
 

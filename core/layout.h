@@ -75,6 +75,23 @@ public:
     const Run& run = runs_.size() == 1 ? runs_.front() : run_of(static_cast<Index>(body));
     return run.at(static_cast<Index>(body) - run.body, rotation_length_);
   }
+  /// Calls f(body, slot) for the slots of some bodies in turn.
+  template <class F>
+  void for_range(Range bodies, F&& f) const {
+    for (Index body = bodies.begin; body < bodies.end;) {
+      const Run& run = run_of(body);
+      const Index end = std::min(bodies.end, run.body + run.count);
+      const Index rotation = run.first.rotation == none ? 0 : rotation_length_;
+      for (BodySlot at = run.at(body - run.body, rotation_length_); body < end; ++body) {
+        f(body, at);
+        ++at.serial;
+        ++at.slot;
+        at.q += at.q_size;
+        at.v += at.v_size;
+        at.rotation += rotation;
+      }
+    }
+  }
   /// Place of a body by its serial number, `none` if there is none.
   [[nodiscard]] Index find(Index serial) const;
 

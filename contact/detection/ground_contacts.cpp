@@ -224,20 +224,17 @@ void GroundContacts::find_among(Range components, const ContactQuery& query, Out
   const BodySlots& bodies = assembly_->layout()->bodies();
   const std::vector<BodyFeature>& points = features_.points();
   PointsInOrder rest(points, features_.of(components).points);
-  const auto add_some = [&](Index i, ShapeBits shapes) {
-    add<D>(bodies[points[i].body], points[i], shapes, query, out);
-  };
-  const auto add_point = [&](Index i) { add_some(i, all_shapes); };
+  const auto add_point = [&](Index i) { add<D>(bodies[points[i].body], points[i], all_shapes, query, out); };
   for_runs(components, [&](const CentreRun& centres) {
     const bool rounded = centres.points != none;
     if (rounded) {
       rest.before(centres.bodies.begin, add_point);
       rest.skip_to(centres.points + centres.bodies.size());
     }
-    const auto add_body = [&](Index body, ShapeBits near) {
-      if (rounded) return add_some(centres.points + (body - centres.bodies.begin), near);
+    const auto add_body = [&](Index body, const BodySlot& at, ShapeBits near) {
+      if (rounded)
+        return add<D>(at, points[centres.points + (body - centres.bodies.begin)], near, query, out);
       rest.before(body, add_point);
-      const BodySlot at = bodies[body];
       add<D>(at, BodyFeature::at_centre(at, body, centres.material), near, query, out);
     };
     for_parts(centres.bodies, PointRow::most, [&](Range part) {
@@ -247,9 +244,9 @@ void GroundContacts::find_among(Range components, const ContactQuery& query, Out
       } else if (!find_near(part, centres, query, near)) {
         return;
       }
-      for (Index body = part.begin; body < part.end; ++body) {
-        if (const ShapeBits shapes = near[body - part.begin]; shapes != 0) add_body(body, shapes);
-      }
+      bodies.for_range(part, [&](Index body, const BodySlot& at) {
+        if (const ShapeBits shapes = near[body - part.begin]; shapes != 0) add_body(body, at, shapes);
+      });
     });
   });
   rest.before(none, add_point);

@@ -42,15 +42,7 @@ MassResponse::MassResponse(const Assembly& assembly) : assembly_(&assembly) {
   of_all_ = assembly.body_kinds()[first.kind]->masses(first.slot);
 }
 
-BodyMasses MassResponse::alone(Index body) const {
-  if (of_all_.mass != nullptr) {
-    BodyMasses own = of_all_;
-    const Index before = own.stride * body;
-    own.mass += before;
-    if (own.inertia != nullptr) own.inertia += before;
-    if (own.gyration_radius != nullptr) own.gyration_radius += before;
-    return own;
-  }
+BodyMasses MassResponse::of_any(Index body) const {
   const BodySlot& slot = assembly_->layout()->bodies()[body];
   return assembly_->body_kinds()[slot.kind]->masses(slot.slot);
 }

@@ -40,10 +40,20 @@ public:
   /// \param assembly must outlive it
   explicit MassResponse(const Assembly& assembly);
   [[nodiscard]] Range reach(Index body) const override;
-  [[nodiscard]] BodyMasses alone(Index body) const override;
+  [[nodiscard]] BodyMasses alone(Index body) const override {
+    if (of_all_.mass == nullptr) return of_any(body);
+    BodyMasses own = of_all_;
+    const Index before = own.stride * body;
+    own.mass += before;
+    if (own.inertia != nullptr) own.inertia += before;
+    if (own.gyration_radius != nullptr) own.gyration_radius += before;
+    return own;
+  }
   void answer(Index body, double* x, std::size_t columns, char* held) override;
 
 private:
+  [[nodiscard]] BodyMasses of_any(Index body) const;
+
   const Assembly* assembly_;
   BodyMasses of_all_;  // from the first body on, where all are of one kind; else null `mass`
 };

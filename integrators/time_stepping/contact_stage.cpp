@@ -130,12 +130,24 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
   return nullptr;
 }
 
+/// Lists the bodies of constraints of one body each, ascending. False if others are among them.
+bool ContactStage::list_lone(std::span<const Constraint> constraints) {
+  struck_.resize(constraints.size());
+  Index last = none;
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const Index body = constraints[i].body();
+    if (constraints[i].bodies != 1 || !(last == none || last < body)) {
+      struck_.clear();
+      return false;
+    }
+    struck_[i] = last = body;
+  }
+  return true;
+}
+
 /// Lists bodies that have constraints, ascending.
 void ContactStage::list_struck(std::span<const Constraint> constraints) {
-  if (constraints.size() == 1 && constraints.front().bodies == 1) {
-    struck_.push_back(constraints.front().body());
-    return;
-  }
+  if (list_lone(constraints)) return;
   bool in_order = true;
   for (const Constraint& constraint : constraints) {
     for (int b = 0; b < constraint.bodies; ++b) {

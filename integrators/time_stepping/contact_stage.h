@@ -86,6 +86,7 @@ private:
   void make_room();
   template <class F>
   [[nodiscard]] const IslandProblem* part_problems(const StepInput& in, const StepIsland& island, F&& solved);
+  [[nodiscard]] bool list_lone(std::span<const Constraint> constraints);
   void list_struck(std::span<const Constraint> constraints);
   void put_struck_in_order();
   void share_out(const StepIsland& island, StepTrial& trial);

@@ -1,8 +1,8 @@
 // Problem: where loads alone would lead bodies.
 
+#include <carom/core/numerics/pair.h>
 #include <carom/integrators/time_stepping/free_bodies.h>
 
-#include <array>
 #include <cstddef>
 
 namespace carom {
@@ -28,6 +28,25 @@ void free_body(const StepInput& in, const double* loads0, const double* loads1, 
   }
 }
 
+/// Likewise of some bodies that turn in the plane and whose velocities follow one another, under loads that
+/// last. \param v first of their velocities
+void free_planar_bodies(const StepInput& in, const double* loads, const BodyMasses& masses, Index count,
+                        Index v, StepTrial& trial) {
+  const BodyMasses m = masses;  // a copy that no store can change
+  const double half = 0.5 * in.step;
+  double *dv = trial.dv_impulses.data() + v, *free = trial.free.data() + v;
+  const double *load = loads + v, *start = in.start.v.data() + v;
+  const float* rounding = in.companion.rounding.data() + v;
+  for (Index i = 0; i < count; ++i, dv += 3, free += 3, load += 3, start += 3, rounding += 3) {
+    const Pair force = load_pair(load), before = load_pair(rounding) + load_pair(start);
+    store_pair(free, both(half) * (force + force) / both(m.mass[m.stride * i]) + before);
+    free[2] =
+        half * (load[2] + load[2]) / m.inertia[m.stride * i] + (static_cast<double>(rounding[2]) + start[2]);
+    store_pair(dv, Pair{});
+    dv[2] = 0.0;
+  }
+}
+
 }  // namespace
 
 void free_body(const StepInput& in, const double* loads0, const double* loads1, Index body,
@@ -43,15 +62,7 @@ void free_alone(const StepInput& in, const double* loads, const MassResponse& re
   const BodyMasses masses = response.alone(body.body);
   if (masses.layout != BodyMasses::Layout::planar_bodies)
     return free_body(in, loads, loads, body.body, trial);
-  const double half = 0.5 * in.step;
-  double *const dv = trial.dv_impulses.data() + body.v, *const free = trial.free.data() + body.v;
-  const double *const load = loads + body.v, *const start = in.start.v.data() + body.v;
-  const float* const rounding = in.companion.rounding.data() + body.v;
-  const std::array<double, 3> mass{*masses.mass, *masses.mass, *masses.inertia};
-  for (std::size_t k = 0; k < mass.size(); ++k) {
-    free[k] = half * (load[k] + load[k]) / mass[k] + (static_cast<double>(rounding[k]) + start[k]);
-    dv[k] = 0.0;
-  }
+  free_planar_bodies(in, loads, masses, 1, body.v, trial);
 }
 
 void free_bodies(const StepInput& in, const double* loads, std::span<const Index> bodies, StepTrial& trial) {
@@ -68,6 +79,9 @@ void free_bodies(const StepInput& in, const double* loads, std::span<const Index
     }
     const Range range{begin, begin + static_cast<Index>(last - first)};
     in.assembly.for_bodies(range, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+      const BodyMasses masses = kind.masses(slots.begin);
+      if (masses.layout == BodyMasses::Layout::planar_bodies)
+        return free_planar_bodies(in, loads, masses, slots.size(), v, trial);
       const std::size_t end = v + static_cast<std::size_t>(slots.size()) * kind.v_size();
       for (std::size_t k = v; k < end; ++k) dv[k] = half * (loads[k] + loads[k]);
       kind.apply_inverse_mass(slots, dv + v, free + v);
