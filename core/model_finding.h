@@ -21,15 +21,16 @@ enum class FindingKind : std::uint8_t {
   untouched_obstacle,   ///< obstacles in a system in which nothing can touch an obstacle
   body_without_shape,   ///< rigid bodies on which only fields act, without a shape, beside obstacles
   keep_without_joint,   ///< System::keep_place() of bodies that no joint binds
-  hidden_by_filter      ///< parts that could touch each other, but for their filters
+  hidden_by_filter,     ///< parts that could touch each other, but for their filters
+  open_joint            ///< joints that a Simulation has to move bodies for, to close them
 };
 /// Number of kinds.
-inline constexpr std::size_t finding_kind_count = 7;
+inline constexpr std::size_t finding_kind_count = 8;
 
 /// Name of a kind: "law without effect", ...
 [[nodiscard]] CAROM_API std::string_view to_string(FindingKind kind);
 
-/// One finding of System::check().
+/// One finding of System::check(), or of a Simulation.
 struct ModelFinding {
   FindingKind kind = FindingKind::law_without_effect;  ///< what is probably wrong
   std::vector<std::string> parts;                      ///< names of the parts (of a law: its materials)

@@ -13,8 +13,8 @@ namespace carom {
 
 std::string_view to_string(FindingKind kind) {
   constexpr std::array<std::string_view, finding_kind_count> names{
-      "law without effect",   "contact without a law", "touches nothing",   "untouched obstacle",
-      "body without a shape", "kept without a joint",  "hidden by a filter"};
+      "law without effect",   "contact without a law", "touches nothing",    "untouched obstacle",
+      "body without a shape", "kept without a joint",  "hidden by a filter", "open joint"};
   return enum_name(names, kind);
 }
 

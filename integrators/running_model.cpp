@@ -1,5 +1,6 @@
 #include <carom/core/dynamics/force_directions.h>
 #include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/dynamics/open_joints.h>
 #include <carom/core/part_check.h>
 #include <carom/integrators/event_driven/impact_list.h>
 #include <carom/integrators/run/companion.h>
@@ -74,6 +75,12 @@ double RunningModel::prepare(State& start) const {
   demand_directions(assembly, start);
   if (machines.driver) machines.driver->demand_start(start);
   return shift;
+}
+
+std::vector<ModelFinding> RunningModel::findings(const State& start) const {
+  std::vector<ModelFinding> found = assembly.system().check();
+  if (std::optional<ModelFinding> open = find_open_joints(assembly, start)) found.push_back(*std::move(open));
+  return found;
 }
 
 State RunningModel::continued(const State& other) const {

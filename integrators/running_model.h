@@ -57,6 +57,8 @@ struct RunningModel {
   /// A state of this model: bodies and elements of another one go on by identity, new ones start as
   /// described.
   [[nodiscard]] State continued(const State& other) const;
+  /// Findings of System::check(), and joints that a state leaves open. \param start before prepare()
+  [[nodiscard]] std::vector<ModelFinding> findings(const State& start) const;
   /// Energies that are stored in a state.
   [[nodiscard]] StoredEnergies stored_energies(const State& state) const;
   /// Reaction of a joint (Simulation::reaction). Throws ModelError.

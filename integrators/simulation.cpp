@@ -171,8 +171,8 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   auto edited = std::make_unique<RunningModel>(std::move(system), self.mode, self.stop);
   State state = edited->continued(self.state);
+  std::vector<ModelFinding> findings = edited->findings(state);
   const double projected = edited->prepare(state);
-  std::vector<ModelFinding> findings = edited->assembly.system().check();
   const auto same = [](const ModelFinding& a, const ModelFinding& b) { return a.text == b.text; };
   self.findings_written = self.findings_written && std::ranges::equal(findings, self.report.findings, same);
   self.report.projected = projected;

@@ -25,8 +25,8 @@ struct Simulation::Impl {
   Impl(System system, Mode chosen)
       : mode(std::move(chosen)), model(std::make_unique<RunningModel>(std::move(system), mode, stop)) {
     state = model->assembly.initial_state();
+    report.findings = model->findings(state);
     report.projected = model->prepare(state);
-    report.findings = model->assembly.system().check();
     forget_history();
     companion.ledger.open(model->stored_energies(state));
   }

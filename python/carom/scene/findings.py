@@ -105,6 +105,7 @@ def examine(scene: Scene) -> Examined:
     except _core.Error as error:
         refused = str(error)
         return Examined(None, found if refused in found else [*found, refused])
+    found += [each.text for each in simulation.report().findings if each.kind == _core.FindingKind.open_joint]
     for redundant in mobility.redundant:
         others = ", ".join(system.name(joint) for joint in redundant.with_)
         found.append(

@@ -1,0 +1,96 @@
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/dynamics/open_joints.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+namespace {
+
+// A joint that is open by less is drawn closed [rad, or of a length].
+constexpr double roughly_closed = 1e-3;
+
+/// A joint, and by how much it is open.
+struct OpenJoint {
+  JointId joint;
+  double gap = 0.0;  // [m, rad]
+  bool turns = false;
+};
+
+/// True of a row that binds angles alone.
+bool binds_angles(const JointRow& row, Index dimension) {
+  for (int b = 0; b < row.bodies; ++b) {
+    const JointRow::Block& block = row.blocks[static_cast<std::size_t>(b)];
+    const int places = std::min(block.columns, static_cast<int>(dimension));
+    const auto first = block.jacobian.begin();
+    if (std::any_of(first, first + places, [](double number) { return number != 0.0; })) return false;
+  }
+  return true;
+}
+
+/// Largest coordinate of a place, or radius of gyration [m].
+double size_of(const Assembly& assembly, Index component, const State& state,
+               const std::vector<double>& lengths) {
+  const Layout& layout = *assembly.layout();
+  const Range bodies = assembly.components()[component].bodies;
+  const auto dimension = static_cast<Index>(layout.dimension());
+  double size = 0.0;
+  layout.bodies().for_range(bodies, [&](Index, const BodySlot& slot) {
+    for (Index i = 0; i < dimension; ++i) size = std::max(size, std::abs(state.q[slot.q + i]));
+    for (Index i = dimension; i < slot.v_size; ++i) size = std::max(size, lengths[slot.v + i]);
+  });
+  return size;
+}
+
+void add_open(const JointConstraints& joints, double size, Index dimension, std::vector<OpenJoint>& out) {
+  const std::vector<double>& gaps = joints.gaps();
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const double gap = std::abs(gaps[i]);
+    if (!(gap > roughly_closed * std::min(size, 1.0))) continue;  // of neither a length nor an angle
+    const bool turns = binds_angles(joints.row(i), dimension);
+    if (!(gap > roughly_closed * (turns ? 1.0 : size))) continue;
+    const JointId joint = joints.joint(i);
+    if (!out.empty() && out.back().joint == joint) {  // rows of a joint follow one another
+      if (gap > out.back().gap) out.back() = {joint, gap, turns};
+    } else {
+      out.push_back({joint, gap, turns});
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<ModelFinding> find_open_joints(const Assembly& assembly, const State& state) {
+  constexpr std::size_t most = 3;  // that the text names
+  if (assembly.joint_kinds().empty()) return std::nullopt;
+  const auto dimension = static_cast<Index>(assembly.layout()->dimension());
+  const std::vector<double> lengths = assembly.length_scales();
+  Evaluation evaluation = make_evaluation(assembly);
+  std::vector<OpenJoint> open;
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    JointConstraints joints(assembly, component);
+    if (joints.empty()) continue;
+    evaluate_positions(assembly, component, state.view(), evaluation);
+    joints.update({state.view(), evaluation.rotation.data()});
+    add_open(joints, size_of(assembly, component, state, lengths), dimension, open);
+  }
+  if (open.empty()) return std::nullopt;
+  ModelFinding finding{FindingKind::open_joint, {}, {}};
+  for (const OpenJoint& at : open) {
+    finding.parts.push_back(assembly.system().name(at.joint));
+    if (finding.parts.size() > most) continue;
+    finding.text += (finding.text.empty() ? "" : ", ") + finding.parts.back() + " by " + to_text(at.gap) +
+                    (at.turns ? " rad" : " m");
+  }
+  if (open.size() > most) finding.text += " and " + std::to_string(open.size() - most) + " more";
+  finding.text += ": open as described, so that bodies are moved to close " +
+                  std::string(open.size() == 1 ? "it" : "them");
+  return finding;
+}
+
+}  // namespace carom
