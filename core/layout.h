@@ -6,6 +6,7 @@
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <memory>

@@ -38,7 +38,7 @@ public:
   ClosingSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options)
       : look_(assembly, detector),
         most_impacts_(options.most_impacts),
-        rounding_(gap_rounding(options)),
+        rounding_(gap_rounding(assembly, options)),
         capture_speed_(options.capture_speed) {}
 
   /// Forgets what has closed: a step begins.

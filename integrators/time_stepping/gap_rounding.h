@@ -3,16 +3,18 @@
 /// \file
 /// Gaps that are rounding in time stepping.
 
+#include <carom/core/export.h>
 #include <carom/integrators/run/time_stepping.h>
 
 namespace carom {
 
+class Assembly;
+
 /// A body that was hit where a gap closed, or was moved out of the ground, stands on it to rounding: on
 /// either side of it, by up to this [m]. It is what positions are iterated to, TimeStepping::tolerance, so
-/// that it has the size of the model as that has; 1e-12 m where that is 0.
-[[nodiscard]] inline double gap_rounding(const TimeStepping& options) {
-  constexpr double usual = 1e-12;
-  return options.tolerance > 0.0 ? options.tolerance : usual;
-}
+/// that it has the size of the model as that has; 1e-12 m where that is 0. Where bodies are described far
+/// from the origin it is what their places are known to, if that is more: four roundings of the largest
+/// coordinate, of which a gap has two.
+[[nodiscard]] CAROM_API double gap_rounding(const Assembly& assembly, const TimeStepping& options);
 
 }  // namespace carom

@@ -43,7 +43,9 @@ double circle_in(const GroundPieces& pieces, Index outline) {
 }  // namespace
 
 PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options)
-    : look_(assembly, detector), least_depth_(1e3 * gap_rounding(options)), at_(assembly.initial_state()) {
+    : look_(assembly, detector),
+      least_depth_(1e3 * gap_rounding(assembly, options)),
+      at_(assembly.initial_state()) {
   reach_.assign(assembly.layout()->bodies().size(), 0.0);
   displacement_.resize(at_.v.size());
   const auto add_all = [&](const BodyOutlines& outlines) {
