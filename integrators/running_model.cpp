@@ -1,6 +1,5 @@
 #include <carom/core/dynamics/force_directions.h>
 #include <carom/core/dynamics/joint_closure.h>
-#include <carom/core/dynamics/open_joints.h>
 #include <carom/core/part_check.h>
 #include <carom/integrators/event_driven/impact_list.h>
 #include <carom/integrators/run/companion.h>
@@ -66,20 +65,21 @@ void ModeMachines::advance_unseen(const Run& run, double limit) {
   }
 }
 
-double RunningModel::prepare(State& start) const {
-  double shift = close_joints(assembly, start).shift;
+RunningModel::Prepared RunningModel::prepare(State& start) const {
+  const JointClosure closed = close_joints(assembly, start);
+  double shift = closed.shift;
   if (machines.stepper) {
     const TimeStepper& stepper = *machines.stepper;
     shift = std::max(shift, prepare_overlaps(assembly, stepper.detector(), stepper.options(), start));
   }
   demand_directions(assembly, start);
   if (machines.driver) machines.driver->demand_start(start);
-  return shift;
+  return {shift, finding_of(assembly.system(), closed.open)};
 }
 
-std::vector<ModelFinding> RunningModel::findings(const State& start) const {
+std::vector<ModelFinding> RunningModel::findings(Prepared start) const {
   std::vector<ModelFinding> found = assembly.system().check();
-  if (std::optional<ModelFinding> open = find_open_joints(assembly, start)) found.push_back(*std::move(open));
+  if (start.finding) found.push_back(*std::move(start.finding));
   return found;
 }
 

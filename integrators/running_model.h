@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -51,14 +52,18 @@ struct ModeMachines {
 struct RunningModel {
   RunningModel(System system, const Mode& mode, const StopRequest& stop)
       : assembly(std::move(system)), machines(assembly, mode, stop) {}
-  /// Brings a state onto the joints, and refuses one that a run cannot start from. Returns the largest
-  /// displacement.
-  [[nodiscard]] double prepare(State& start) const;
+  /// A state that a run may start from, now.
+  struct Prepared {
+    double projected = 0.0;               ///< largest displacement of a body to get there [m]
+    std::optional<ModelFinding> finding;  ///< joints that were open
+  };
+  /// Brings a state onto the joints, and refuses one that a run cannot start from.
+  [[nodiscard]] Prepared prepare(State& start) const;
   /// A state of this model: bodies and elements of another one go on by identity, new ones start as
   /// described.
   [[nodiscard]] State continued(const State& other) const;
-  /// Findings of System::check(), and joints that a state leaves open. \param start before prepare()
-  [[nodiscard]] std::vector<ModelFinding> findings(const State& start) const;
+  /// Findings of System::check(), and that of prepare().
+  [[nodiscard]] std::vector<ModelFinding> findings(Prepared start) const;
   /// Energies that are stored in a state.
   [[nodiscard]] StoredEnergies stored_energies(const State& state) const;
   /// Reaction of a joint (Simulation::reaction). Throws ModelError.

@@ -171,8 +171,9 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   auto edited = std::make_unique<RunningModel>(std::move(system), self.mode, self.stop);
   State state = edited->continued(self.state);
-  std::vector<ModelFinding> findings = edited->findings(state);
-  const double projected = edited->prepare(state);
+  RunningModel::Prepared start = edited->prepare(state);
+  const double projected = start.projected;
+  std::vector<ModelFinding> findings = edited->findings(std::move(start));
   const auto same = [](const ModelFinding& a, const ModelFinding& b) { return a.text == b.text; };
   self.findings_written = self.findings_written && std::ranges::equal(findings, self.report.findings, same);
   self.report.projected = projected;
@@ -195,7 +196,7 @@ void Simulation::set_state(const State& state) {
     throw ModelError("state: model is another one; allowed: a state of this simulation since its last edit");
   }
   State closed = state;
-  self.report.projected = self.model->prepare(closed);
+  self.report.projected = self.model->prepare(closed).projected;
   const bool moved_in_time = state.time != self.state.time;
   self.state = std::move(closed);
   if (moved_in_time) {

@@ -25,8 +25,9 @@ struct Simulation::Impl {
   Impl(System system, Mode chosen)
       : mode(std::move(chosen)), model(std::make_unique<RunningModel>(std::move(system), mode, stop)) {
     state = model->assembly.initial_state();
-    report.findings = model->findings(state);
-    report.projected = model->prepare(state);
+    RunningModel::Prepared start = model->prepare(state);
+    report.projected = start.projected;
+    report.findings = model->findings(std::move(start));
     forget_history();
     companion.ledger.open(model->stored_energies(state));
   }

@@ -180,9 +180,9 @@ JointConstraints constraints_of(const Assembly& assembly, Index component) {
   return joints;
 }
 
-/// Closes the gaps by Newton's method. Throws ModelError.
+/// Closes the gaps by Newton's method. Throws ModelError. \param open joints that were open, to be added to
 void close_gaps(const Assembly& assembly, Index component, JointConstraints& joints, ClosureWork& work,
-                State& state) {
+                State& state, std::vector<OpenJoint>& open) {
   const Component& range = assembly.components()[component];
   std::vector<double> off(joints.size());
   std::vector<double>&change = work.change, &moved = work.moved;
@@ -196,6 +196,7 @@ void close_gaps(const Assembly& assembly, Index component, JointConstraints& joi
     if (left <= rounding * size) break;
     const bool stalls = !(left < 0.5 * best) && left <= accepted * size;
     if (stalls) break;
+    if (step == 0) list_open_joints(assembly, component, joints, state, work.lengths, open);
     if (step == most_steps || !std::isfinite(left)) {
       refuse(assembly, joints, worst, off[worst], "cannot be closed", "m or rad");
     }
@@ -232,7 +233,7 @@ void close_component(const Assembly& assembly, Index component, ClosureWork& wor
                      JointClosure& closure) {
   JointConstraints joints = constraints_of(assembly, component);
   if (joints.empty()) return;
-  close_gaps(assembly, component, joints, work, state);
+  close_gaps(assembly, component, joints, work, state, closure.open);
   demand_unique_pressure(assembly, component, joints);
   const Component& range = assembly.components()[component];
   const Layout& layout = *assembly.layout();

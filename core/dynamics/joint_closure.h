@@ -3,6 +3,7 @@
 /// \file
 /// Joints at the start of a run: projection of positions and velocities onto them, and degrees of freedom.
 
+#include <carom/core/dynamics/open_joints.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 
@@ -14,8 +15,9 @@ class Assembly;
 
 /// Corrections that closed the joints.
 struct JointClosure {
-  double shift = 0.0;   ///< largest displacement of a body, angles times its radius of gyration [m]
-  double change = 0.0;  ///< largest change of a velocity, likewise [m/s]
+  double shift = 0.0;           ///< largest displacement of a body, angles times its radius of gyration [m]
+  double change = 0.0;          ///< largest change of a velocity, likewise [m/s]
+  std::vector<OpenJoint> open;  ///< joints that were not roughly closed before (open_joints.h)
 };
 
 /// Projects the positions of a state onto the joints, and then its velocities, both by the smallest changes

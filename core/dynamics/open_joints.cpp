@@ -15,13 +15,6 @@ namespace {
 // A joint that is open by less is drawn closed [rad, or of a length].
 constexpr double roughly_closed = 1e-3;
 
-/// A joint, and by how much it is open.
-struct OpenJoint {
-  JointId joint;
-  double gap = 0.0;  // [m, rad]
-  bool turns = false;
-};
-
 /// True of a row that binds angles alone.
 bool binds_angles(const JointRow& row, Index dimension) {
   for (int b = 0; b < row.bodies; ++b) {
@@ -47,7 +40,12 @@ double size_of(const Assembly& assembly, Index component, const State& state,
   return size;
 }
 
-void add_open(const JointConstraints& joints, double size, Index dimension, std::vector<OpenJoint>& out) {
+}  // namespace
+
+void list_open_joints(const Assembly& assembly, Index component, const JointConstraints& joints,
+                      const State& state, const std::vector<double>& lengths, std::vector<OpenJoint>& out) {
+  const auto dimension = static_cast<Index>(assembly.layout()->dimension());
+  const double size = size_of(assembly, component, state, lengths);
   const std::vector<double>& gaps = joints.gaps();
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const double gap = std::abs(gaps[i]);
@@ -63,26 +61,12 @@ void add_open(const JointConstraints& joints, double size, Index dimension, std:
   }
 }
 
-}  // namespace
-
-std::optional<ModelFinding> find_open_joints(const Assembly& assembly, const State& state) {
+std::optional<ModelFinding> finding_of(const System& system, std::span<const OpenJoint> open) {
   constexpr std::size_t most = 3;  // that the text names
-  if (assembly.joint_kinds().empty()) return std::nullopt;
-  const auto dimension = static_cast<Index>(assembly.layout()->dimension());
-  const std::vector<double> lengths = assembly.length_scales();
-  Evaluation evaluation = make_evaluation(assembly);
-  std::vector<OpenJoint> open;
-  for (Index component = 0; component < assembly.components().size(); ++component) {
-    JointConstraints joints(assembly, component);
-    if (joints.empty()) continue;
-    evaluate_positions(assembly, component, state.view(), evaluation);
-    joints.update({state.view(), evaluation.rotation.data()});
-    add_open(joints, size_of(assembly, component, state, lengths), dimension, open);
-  }
   if (open.empty()) return std::nullopt;
   ModelFinding finding{FindingKind::open_joint, {}, {}};
   for (const OpenJoint& at : open) {
-    finding.parts.push_back(assembly.system().name(at.joint));
+    finding.parts.push_back(system.name(at.joint));
     if (finding.parts.size() > most) continue;
     finding.text += (finding.text.empty() ? "" : ", ") + finding.parts.back() + " by " + to_text(at.gap) +
                     (at.turns ? " rad" : " m");

@@ -1,23 +1,38 @@
 #pragma once
 
 /// \file
-/// Joints that a description leaves open: a run moves bodies to close them, which is probably not what was
-/// meant where they move far.
+/// Joints that a description leaves open: close_joints() moves bodies to close them, which is probably not
+/// what was meant where they move far.
 
 #include <carom/core/export.h>
 #include <carom/core/model_finding.h>
 #include <carom/core/state.h>
 
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace carom {
 
 class Assembly;
+class JointConstraints;
+class System;
 
-/// The joints and drivers that a state leaves open by more than a thousandth: of a radian, or of the largest
-/// coordinate or radius of gyration of the bodies that joints bind to theirs. None where a drawing has three
-/// digits. \param state before close_joints()
-[[nodiscard]] CAROM_API std::optional<ModelFinding> find_open_joints(const Assembly& assembly,
-                                                                     const State& state);
+/// A joint or driver, and by how much it is open.
+struct OpenJoint {
+  JointId joint;       ///< identity
+  double gap = 0.0;    ///< of its row that is furthest off [m, rad]
+  bool turns = false;  ///< it is an angle
+};
+
+/// Appends the joints of a component that a state leaves open by more than a thousandth: of a radian, or of
+/// the largest coordinate or radius of gyration of its bodies. None where a drawing has three digits.
+/// \param joints of the component, brought to the state \param lengths Assembly::length_scales()
+CAROM_API void list_open_joints(const Assembly& assembly, Index component, const JointConstraints& joints,
+                                const State& state, const std::vector<double>& lengths,
+                                std::vector<OpenJoint>& out);
+/// What is probably a mistake about them; none if there are none.
+[[nodiscard]] CAROM_API std::optional<ModelFinding> finding_of(const System& system,
+                                                               std::span<const OpenJoint> open);
 
 }  // namespace carom

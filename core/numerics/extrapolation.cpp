@@ -32,15 +32,16 @@ void extrapolate_by(Range range, const LastNumbers& last, double* guess) {
 }
 
 /// Adds the errors, times weights, that guesses by 1, 2, ... steps would have had at the last one: its
-/// backward differences. \tparam T a number or pair of numbers \param at values of the last steps
-template <std::size_t Steps, class T>
-void add_errors(std::array<T, Steps> at, T weight, std::array<T, Steps>& errors) {
+/// backward differences, of two numbers. \param at values of the last steps
+template <std::size_t Steps>
+void add_errors(std::array<Pair, Steps> at, Pair weight, std::array<Pair, Steps>& errors) {
   for (std::size_t level = 1; level < Steps; ++level) {
     for (std::size_t k = 0; k + level < Steps; ++k) at[k] -= at[k + 1];
     errors[level] += weight * magnitude(at[0]);
   }
 }
 
+/// Whose sum is least. \tparam Steps that are known
 template <std::size_t Steps>
 std::size_t best_of(Range range, const LastNumbers& last, const double* weight) {
   std::array<Pair, Steps> errors{};

@@ -98,8 +98,8 @@ struct StepReport : StepNumbers {
   /// Impulses of all joints, including their reactions to contact; by component, then by kind. In the
   /// event-driven mode those of impacts: impact after impact, without joints that have no impulse.
   std::vector<JointImpulse> joint_impulses;
-  /// Findings of System::check() in the model, and joints that it left open (core/dynamics/open_joints.h), at
-  /// the start or the last edit; the same in every step.
+  /// Findings of System::check() in the model, and joints that it left open (core/dynamics/joint_closure.h),
+  /// at the start or the last edit; the same in every step.
   std::vector<ModelFinding> findings;
   /// File of the contact problem with the largest residual that was accepted at the cap of its sweeps, where
   /// TimeStepping::failure_directory is given and none before was worse; where it could not be written, why.

@@ -3,7 +3,7 @@
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
-#include <carom/core/dynamics/open_joints.h>
+#include <carom/core/dynamics/joint_closure.h>
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,8 @@ using namespace carom::planar;
 
 std::optional<ModelFinding> found_in(const System& system) {
   const Assembly assembly(system);
-  return find_open_joints(assembly, assembly.initial_state());
+  State state = assembly.initial_state();
+  return finding_of(system, close_joints(assembly, state).open);
 }
 
 /// A rod of a length, pinned to the origin at its end, whose centre is drawn somewhere.
