@@ -279,7 +279,7 @@ def test_a_reader_that_has_enough_is_no_error():
 def test_check_tells_joints_that_are_drawn_open(tmp_path, capsys):
     system = carom.System()
     arm = system.add(planar.RigidBody(mass=planar.rod(1.0, 1.0)))
-    system.add(planar.Revolute(to=(arm, (-0.5, 0.0))), name="pin")
+    system.add(planar.Revolute(from_=carom.ground, to=(arm, (-0.5, 0.0))), name="pin")
     carom.save_scene(system, tmp_path / "scene.json")
     assert main(["check", str(tmp_path / "scene.json")]) == 1
     assert "revolute joint #0 'pin' by 0.5 m: open as described" in capsys.readouterr().out
