@@ -282,4 +282,4 @@ def test_check_tells_joints_that_are_drawn_open(tmp_path, capsys):
     system.add(planar.Revolute(from_=carom.ground, to=(arm, (-0.5, 0.0))), name="pin")
     carom.save_scene(system, tmp_path / "scene.json")
     assert main(["check", str(tmp_path / "scene.json")]) == 1
-    assert "revolute joint #0 'pin' by 0.5 m: open as described" in capsys.readouterr().out
+    assert "revolute joint 'pin' by 0.5 m: open as described" in capsys.readouterr().out
