@@ -39,7 +39,6 @@ set(carom_public_headers
     core/difference_derivatives.h
     core/dot.h
     core/dynamics/joint_closure.h
-    core/dynamics/open_joints.h
     core/dynamics/total_momentum.h
     core/element_derivatives.h
     core/element_loads.h

@@ -6,7 +6,6 @@
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <memory>
@@ -81,7 +80,7 @@ public:
   void for_range(Range bodies, F&& f) const {
     for (Index body = bodies.begin; body < bodies.end;) {
       const Run& run = run_of(body);
-      const Index end = std::min(bodies.end, run.body + run.count);
+      const Index run_end = run.body + run.count, end = bodies.end < run_end ? bodies.end : run_end;
       const Index rotation = run.first.rotation == none ? 0 : rotation_length_;
       for (BodySlot at = run.at(body - run.body, rotation_length_); body < end; ++body) {
         f(body, at);

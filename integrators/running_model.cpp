@@ -1,5 +1,6 @@
 #include <carom/core/dynamics/force_directions.h>
 #include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/dynamics/open_joints.h>
 #include <carom/core/part_check.h>
 #include <carom/integrators/event_driven/impact_list.h>
 #include <carom/integrators/run/companion.h>

@@ -1,6 +1,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/dynamics/open_joints.h>
 
 #include <algorithm>
 #include <cmath>

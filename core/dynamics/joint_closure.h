@@ -3,7 +3,6 @@
 /// \file
 /// Joints at the start of a run: projection of positions and velocities onto them, and degrees of freedom.
 
-#include <carom/core/dynamics/open_joints.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 
@@ -13,11 +12,18 @@ namespace carom {
 
 class Assembly;
 
+/// A joint or driver, and by how much it is open.
+struct OpenJoint {
+  JointId joint;       ///< identity
+  double gap = 0.0;    ///< of its row that is furthest off [m, rad]
+  bool turns = false;  ///< it is an angle
+};
+
 /// Corrections that closed the joints.
 struct JointClosure {
   double shift = 0.0;           ///< largest displacement of a body, angles times its radius of gyration [m]
   double change = 0.0;          ///< largest change of a velocity, likewise [m/s]
-  std::vector<OpenJoint> open;  ///< joints that were not roughly closed before (open_joints.h)
+  std::vector<OpenJoint> open;  ///< joints that were not roughly closed before (core/dynamics/open_joints.h)
 };
 
 /// Projects the positions of a state onto the joints, and then its velocities, both by the smallest changes

@@ -4,6 +4,7 @@
 /// Joints that a description leaves open: close_joints() moves bodies to close them, which is probably not
 /// what was meant where they move far.
 
+#include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/export.h>
 #include <carom/core/model_finding.h>
 #include <carom/core/state.h>
@@ -17,13 +18,6 @@ namespace carom {
 class Assembly;
 class JointConstraints;
 class System;
-
-/// A joint or driver, and by how much it is open.
-struct OpenJoint {
-  JointId joint;       ///< identity
-  double gap = 0.0;    ///< of its row that is furthest off [m, rad]
-  bool turns = false;  ///< it is an angle
-};
 
 /// Appends the joints of a component that a state leaves open by more than a thousandth: of a radian, or of
 /// the largest coordinate or radius of gyration of its bodies. None where a drawing has three digits.

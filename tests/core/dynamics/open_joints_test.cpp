@@ -4,6 +4,7 @@
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/dynamics/open_joints.h>
 
 #include <gtest/gtest.h>
 
