@@ -10,14 +10,13 @@
 namespace carom {
 
 /// Sets `body`, and `other` or `obstacle` of a record, or none of a joint limit, from its constraint.
-/// \param first identity of its first body
 template <class Record>
-void set_parties(const Constraint& at, BodyId first, const Assembly& assembly, Record& out) {
+void set_parties(const Constraint& at, const Assembly& assembly, Record& out) {
   const Layout& layout = *assembly.layout();
   const bool of_bodies = at.type == ConstraintType::contact && at.bodies == 2;
   const bool of_ground = at.key.b.owner == FeatureKey::Owner::obstacle;
-  const BodyId other = of_bodies ? layout.id(at.blocks[1].body) : BodyId{};
-  out.body = first;
+  const BodyId body = layout.id(at.body()), other = of_bodies ? layout.id(at.blocks[1].body) : BodyId{};
+  out.body = body;
   out.other = other;
   out.obstacle = of_ground ? ObstacleId{at.key.b.serial, layout.token()} : ObstacleId{};
 }

@@ -1,6 +1,7 @@
 // Problem: find what a model describes in vain.
 
 #include <carom/core/enum_name.h>
+#include <carom/core/listed.h>
 #include <carom/core/system_notes.h>
 
 #include <algorithm>
@@ -22,14 +23,7 @@ namespace {
 
 using PartNames = std::vector<std::string>;
 
-/// "disc 'rim', disc #1 and 7 more".
-std::string listed(const PartNames& parts) {
-  constexpr std::size_t most = 3;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(parts.size(), most); ++i) text += (i == 0 ? "" : ", ") + parts[i];
-  if (parts.size() > most) text += " and " + std::to_string(parts.size() - most) + " more";
-  return text;
-}
+std::string listed(const PartNames& parts) { return carom::listed(parts, 3); }
 
 /// "material 'steel'".
 std::string name_of(const SurfaceTable& surfaces, MaterialId material) {

@@ -1,6 +1,7 @@
 #include <carom/contact/detection/contact_look.h>
 #include <carom/core/dynamics/total_momentum.h>
 #include <carom/core/errors.h>
+#include <carom/core/largest_coordinate.h>
 #include <carom/core/part_check.h>
 #include <carom/integrators/energy_recorder.h>
 #include <carom/integrators/simulation.h>
@@ -21,17 +22,6 @@ double deepest_penetration(const Simulation& simulation) {
   double deepest = 0.0;
   for (const Constraint& contact : contacts) deepest = std::max(deepest, -contact.gap);
   return deepest;
-}
-
-double largest_coordinate(const State& state) {
-  const Layout& layout = *state.layout();
-  double largest = 0.0;
-  for (const BodySlot& slot : layout.bodies()) {
-    for (Index i = 0; i < static_cast<Index>(layout.dimension()); ++i) {
-      largest = std::max(largest, std::abs(state.q[slot.q + i]));
-    }
-  }
-  return largest;
 }
 
 /// Gathers what happens between rows and makes the rows.

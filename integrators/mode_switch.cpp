@@ -8,6 +8,7 @@
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/listed.h>
 #include <carom/integrators/event_driven/event_balance.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/time_stepping/gap_projection.h>
@@ -29,15 +30,11 @@ namespace {
   SolverFailure failure;
   failure.time = time;
   failure.residual = -result.left->gap;
-  std::string names;
-  for (const Constraint& contact : contacts) {
-    failure.parts.push_back(detector.name(contact.key));
-    if (failure.parts.size() <= most) names += (names.empty() ? "" : ", ") + failure.parts.back();
-  }
-  if (contacts.size() > most) names += " and " + std::to_string(contacts.size() - most) + " more";
+  for (const Constraint& contact : contacts) failure.parts.push_back(detector.name(contact.key));
   const std::string message = "change to the event-driven mode at t = " + to_text(time) +
-                              " s: no displacement opens the gaps of " + names + " together; left is " +
-                              to_text(result.left->gap) + " m; allowed: bodies that have room";
+                              " s: no displacement opens the gaps of " + listed(failure.parts, most) +
+                              " together; left is " + to_text(result.left->gap) +
+                              " m; allowed: bodies that have room";
   throw SolverError(message, std::move(failure));
 }
 

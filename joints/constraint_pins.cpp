@@ -115,11 +115,12 @@ void ConstraintPartTable::evaluate_pins(const JointView& at, Range joints,
     if (number == nullptr) continue;
     const Pair from_turn = both(a.lever_x) * -y - both(a.lever_y) * -x + zero;  // no negative zero
     const Pair to_turn = both(b.lever_x) * y - both(b.lever_y) * x + zero;
-    if (from.v != none) number = write_push(-first, from_turn[0], from.rotation != none, number);
-    if (to.v != none) number = write_push(first, to_turn[0], to.rotation != none, number);
-    if constexpr (Rows == 1) continue;
-    if (from.v != none) number = write_push(-second, from_turn[1], from.rotation != none, number);
-    if (to.v != none) number = write_push(second, to_turn[1], to.rotation != none, number);
+    const auto write_row = [&](Pair axis, double from_spin, double to_spin) {
+      if (from.v != none) number = write_push(-axis, from_spin, from.rotation != none, number);
+      if (to.v != none) number = write_push(axis, to_spin, to.rotation != none, number);
+    };
+    write_row(first, from_turn[0], to_turn[0]);
+    if constexpr (Rows == 2) write_row(second, from_turn[1], to_turn[1]);
   }
 }
 

@@ -1,6 +1,8 @@
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/dynamics/open_joints.h>
+#include <carom/core/largest_coordinate.h>
+#include <carom/core/listed.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +34,8 @@ double size_of(const Assembly& assembly, Index component, const State& state,
   const Layout& layout = *assembly.layout();
   const Range bodies = assembly.components()[component].bodies;
   const auto dimension = static_cast<Index>(layout.dimension());
-  double size = 0.0;
+  double size = largest_coordinate(state, bodies);
   layout.bodies().for_range(bodies, [&](Index, const BodySlot& slot) {
-    for (Index i = 0; i < dimension; ++i) size = std::max(size, std::abs(state.q[slot.q + i]));
     for (Index i = dimension; i < slot.v_size; ++i) size = std::max(size, lengths[slot.v + i]);
   });
   return size;
@@ -64,17 +65,15 @@ void list_open_joints(const Assembly& assembly, Index component, const JointCons
 std::optional<ModelFinding> finding_of(const System& system, std::span<const OpenJoint> open) {
   constexpr std::size_t most = 3;  // that the text names
   if (open.empty()) return std::nullopt;
-  ModelFinding finding{FindingKind::open_joint, {}, {}};
+  std::vector<std::string> names, with_gaps;
   for (const OpenJoint& at : open) {
-    finding.parts.push_back(system.name(at.joint));
-    if (finding.parts.size() > most) continue;
-    finding.text += (finding.text.empty() ? "" : ", ") + finding.parts.back() + " by " + to_text(at.gap) +
-                    (at.turns ? " rad" : " m");
+    names.push_back(system.name(at.joint));
+    with_gaps.push_back(names.back() + " by " + to_text(at.gap) + (at.turns ? " rad" : " m"));
   }
-  if (open.size() > most) finding.text += " and " + std::to_string(open.size() - most) + " more";
-  finding.text += ": open as described, so that bodies are moved to close " +
-                  std::string(open.size() == 1 ? "it" : "them");
-  return finding;
+  const std::string closed = open.size() == 1 ? "it" : "them";
+  return ModelFinding{
+      FindingKind::open_joint, std::move(names),
+      listed(with_gaps, most) + ": open as described, so that bodies are moved to close " + closed};
 }
 
 }  // namespace carom

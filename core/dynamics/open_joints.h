@@ -25,7 +25,7 @@ class System;
 CAROM_API void list_open_joints(const Assembly& assembly, Index component, const JointConstraints& joints,
                                 const State& state, const std::vector<double>& lengths,
                                 std::vector<OpenJoint>& out);
-/// What is probably a mistake about them; none if there are none.
+/// The finding about such joints; none if there are none.
 [[nodiscard]] CAROM_API std::optional<ModelFinding> finding_of(const System& system,
                                                                std::span<const OpenJoint> open);
 

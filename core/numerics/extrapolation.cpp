@@ -3,11 +3,21 @@
 #include <carom/core/numerics/pair.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace carom {
 
 namespace {
+
+/// Calls f with the number of steps, 1 to most_extrapolated, as a constant for loops.
+template <class F>
+void with_count(std::size_t steps, F&& f) {
+  const auto try_all = [&]<std::size_t... Fewer>(std::index_sequence<Fewer...>) {
+    ((steps == Fewer + 1 ? f(std::integral_constant<std::size_t, Fewer + 1>()) : void()), ...);
+  };
+  try_all(std::make_index_sequence<most_extrapolated>());
+}
 
 /// Binomial coefficients of alternating sign: the polynomial through `Steps` numbers, one step on.
 template <std::size_t Steps>
@@ -64,18 +74,12 @@ std::size_t best_of(Range range, const LastNumbers& last, const double* weight) 
 
 std::size_t best_steps(Range range, const LastNumbers& last, std::size_t steps, const double* weight) {
   std::size_t best = 1;
-  const auto by = [&]<std::size_t... Fewer>(std::index_sequence<Fewer...>) {
-    ((steps == Fewer + 1 ? void(best = best_of<Fewer + 1>(range, last, weight)) : void()), ...);
-  };
-  by(std::make_index_sequence<most_extrapolated>());
+  with_count(steps, [&](auto count) { best = best_of<count>(range, last, weight); });
   return best;
 }
 
 void extrapolate(Range range, const LastNumbers& last, std::size_t steps, double* guess) {
-  const auto by = [&]<std::size_t... Fewer>(std::index_sequence<Fewer...>) {
-    ((steps == Fewer + 1 ? extrapolate_by<Fewer + 1>(range, last, guess) : void()), ...);
-  };
-  by(std::make_index_sequence<most_extrapolated>());
+  with_count(steps, [&](auto count) { extrapolate_by<count>(range, last, guess); });
 }
 
 }  // namespace carom

@@ -177,7 +177,7 @@ void ClockGroup::list_forces(std::vector<LastingContact>& out) {
       LastingContact& force = out.emplace_back();
       const Constraint& closed = contact.at;
       force.key = closed.key;
-      set_parties(closed, assembly.layout()->id(closed.body()), assembly, force);
+      set_parties(closed, assembly, force);
       find_point_of_contact(closed, at.state.q.data() + assembly.layout()->bodies()[closed.body()].q,
                             force.point, force.normal);
       force.gap = closed.gap;

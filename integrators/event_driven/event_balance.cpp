@@ -92,7 +92,7 @@ EventRecord& EventBalance::record(EventKind kind, double time, const Constraint&
   event.instant = instant_;
   if (contact.bodies == 0) return event;
   event.contact = contact.key;
-  set_parties(contact, assembly.layout()->id(contact.body()), assembly, event);
+  set_parties(contact, assembly, event);
   return event;
 }
 

@@ -83,9 +83,8 @@ public:
 private:
   /// Which contact it is, and where.
   void write_place(const Constraint& at, ContactRecord& entry) const {
-    const Layout& layout = *assembly_.layout();
-    const BodySlot body = layout.bodies()[at.body()];
-    set_parties(at, {body.serial, layout.token()}, assembly_, entry);
+    const BodySlot body = assembly_.layout()->bodies()[at.body()];
+    set_parties(at, assembly_, entry);
     entry.key = at.key;
     entry.directions = at.rows;
     entry.gap = at.gap;

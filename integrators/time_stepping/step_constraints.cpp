@@ -52,13 +52,14 @@ StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& o
     : detector_(assembly),
       rules_{options.capture_speed,
              gap_rounding(assembly, options),
-             ends_at_rounding(options) ? gap_rounding(assembly, options) : 0.0,
+             0.0,
              options.project_gaps && options.impacts != ImpactTimes::located,
              options.impacts == ImpactTimes::located,
              options.impacts == ImpactTimes::at_step_start || sticks(detector_),
              ends_at_rounding(options) || turning_opens(detector_) || sticks(detector_),
              is_plain(detector_)},
       islands_(assembly) {
+  if (ends_at_rounding(options)) rules_.slack = rules_.rounding;
   // Without the contact that rounding opens a body at rest would fall for a step, and slide away although it
   // stuck. Where impacts are located its closing is found within the step.
   if (options.project_gaps || rules_.keeps_slow) rules_.margin = rules_.rounding;

@@ -3,6 +3,7 @@
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/core/dynamics/prescribed_joints.h>
+#include <carom/core/listed.h>
 #include <carom/integrators/run/failure_file.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 
@@ -24,11 +25,7 @@ std::string place(const StepInput& in) {
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 12;  // of a pile all the same says nothing
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i == 0 ? "" : ", ") + names[i];
-  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
-  return text;
+  return carom::listed(names, 12);  // of a pile all the same says nothing
 }
 
 [[noreturn]] void refuse(const char* option, double value, const char* allowed) {

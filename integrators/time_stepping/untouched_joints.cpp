@@ -50,21 +50,27 @@ void UntouchedJoints::sweep(const StepInput& in, const StepRule& rule, StepTrial
     joints.displace(joints.arrays->displacement, trial.end);
     joints.rows.turn_bodies(in, trial);
   } else {
-    if (turned > JointIterate::rounding) {
-      // A second look at the rows alone costs less than another sweep.
-      joints.move_bodies(in, rule, trial);
-      return_to_joints(in, trial);
-      joints.rows.place_end(in, trial);
-      note_velocities(trial);
-    }
-    joints.correct_impulses(in, trial);
-    joints.move_bodies(in, rule, trial);
-    return_to_joints(in, trial);
-    joints.rows.place(in, trial);
+    correct_again(in, rule, turned > JointIterate::rounding, trial);
   }
   violation_ = joints.violation(trial.end);
   ++sweeps_;
   trial.account.swept = true;
+}
+
+/// Completes a sweep whose rows turn. \param look first looks at them where the correction leads: that alone
+/// costs less than another sweep
+void UntouchedJoints::correct_again(const StepInput& in, const StepRule& rule, bool look, StepTrial& trial) {
+  JointIterate& joints = *iterate_;
+  if (look) {
+    joints.move_bodies(in, rule, trial);
+    return_to_joints(in, trial);
+    joints.rows.place_end(in, trial);
+    note_velocities(trial);
+  }
+  joints.correct_impulses(in, trial);
+  joints.move_bodies(in, rule, trial);
+  return_to_joints(in, trial);
+  joints.rows.place(in, trial);
 }
 
 /// Velocities with which the rows were brought to where they are.
@@ -74,7 +80,7 @@ void UntouchedJoints::note_velocities(const StepTrial& trial) {
             iterate_->arrays->before_v.begin() + v.begin);
 }
 
-/// What the correction turns the rows by, to be compared with what may be left of velocities [rad, or m in
+/// Angle that the correction turns the rows by, to be compared with the rounding of velocities [rad, or m in
 /// place of it: whether it is exact does not matter to the answer].
 double UntouchedJoints::turn_of_rows(const StepInput& in, const StepTrial& trial) const {
   const JointArrays& arrays = *iterate_->arrays;

@@ -32,6 +32,7 @@ public:
   void record(bool struck, JointHistory& history) const;
 
 private:
+  void correct_again(const StepInput& in, const StepRule& rule, bool look, StepTrial& trial);
   void note_velocities(const StepTrial& trial);
   [[nodiscard]] double turn_of_rows(const StepInput& in, const StepTrial& trial) const;
   void return_to_joints(const StepInput& in, StepTrial& trial);
