@@ -95,7 +95,7 @@ void ConstraintPartTable::evaluate_pins(const JointView& at, Range joints,
   const PinRow &one = pins.front(), &other = pins.back();
   double *gap = out.gap, *drift = out.drift, *number = out.jacobian;
   for (Index joint = joints.begin; joint < joints.end; ++joint) {
-    const auto& [from, to] = places_[joint];
+    const auto &from = places_[joint].from, &to = places_[joint].to;  // clang 14 captures no bindings
     const PinPoint a = pin_point(number_at(rotations, from.rotation, no_rotation),
                                  number_at(q, from.q, origin), from_points[joint * from_stride]);
     const PinPoint b = pin_point(number_at(rotations, to.rotation, no_rotation), number_at(q, to.q, origin),
