@@ -31,6 +31,13 @@ std::string with_unit(double value, std::string_view unit) {
   return text;
 }
 
+/// Of a number that parts store: NaN stands for those that a description leaves out.
+std::string stored(double value, std::string_view unit) {
+  std::string text = with_unit(value, unit);
+  if (std::isnan(value)) text += ", perhaps not given";
+  return text;
+}
+
 template <class K, class Identity>
 std::string with_removal(const System& system, const Registry<K>& parts, Identity id) {
   std::string text = system.name(id);
@@ -80,23 +87,23 @@ void PartCheck::finite(std::span<const double> values, std::string_view quantity
 
 void PartCheck::positive(double value, std::string_view quantity, std::string_view unit) const {
   if (is_admissible(value) && value > 0.0) return;
-  refuse(quantity, with_unit(value, unit), allowed_instead(value, "finite and > 0"));
+  refuse(quantity, stored(value, unit), allowed_instead(value, "finite and > 0"));
 }
 
 void PartCheck::non_negative(double value, std::string_view quantity, std::string_view unit) const {
   if (is_admissible(value) && value >= 0.0) return;
-  refuse(quantity, with_unit(value, unit), allowed_instead(value, "finite and >= 0"));
+  refuse(quantity, stored(value, unit), allowed_instead(value, "finite and >= 0"));
 }
 
 void PartCheck::direction(std::span<const double> values, std::string_view quantity) const {
   for (const double value : values) {
-    if (!std::isfinite(value)) refuse(quantity, to_text(value), "a finite number");
+    if (!std::isfinite(value)) refuse(quantity, stored(value, ""), "a finite number");
   }
 }
 
 void PartCheck::between(double value, double lower, double upper, std::string_view quantity) const {
   if (value >= lower && value <= upper) return;
-  refuse(quantity, to_text(value), "in [" + to_text(lower) + ", " + to_text(upper) + "]");
+  refuse(quantity, stored(value, ""), "in [" + to_text(lower) + ", " + to_text(upper) + "]");
 }
 
 void PartCheck::breaks(std::span<const double> times, std::string_view quantity) const {

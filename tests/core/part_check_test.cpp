@@ -93,6 +93,16 @@ TEST_F(PartCheckTest, Between) {
   }
 }
 
+TEST_F(PartCheckTest, NumbersLeftOutAreSaidToBe) {
+  const char* left_out = ", perhaps not given; allowed: ";
+  EXPECT_MODEL_ERROR(check.positive(nan, "mass", "kg"), "mass is nan kg", left_out);
+  EXPECT_MODEL_ERROR(check.non_negative(nan, "friction", ""), "friction is nan", left_out);
+  EXPECT_MODEL_ERROR(check.between(nan, 0.0, 1.0, "normal_restitution"), "normal_restitution is nan",
+                     left_out);
+  EXPECT_MODEL_ERROR(check.direction(std::array{nan, nan}, "axis"), "axis is nan", left_out);
+  EXPECT_MODEL_ERROR(check.positive(infinity, "mass", "kg"), "mass is inf kg; allowed: ");
+}
+
 TEST_F(PartCheckTest, SurfaceChecksEveryCoefficient) {
   const Surface good{.friction = 3.0, .normal_restitution = 0.0, .tangential_restitution = 1.0};
   EXPECT_NO_THROW(check.surface(good));
