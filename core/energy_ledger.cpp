@@ -42,6 +42,22 @@ void EnergyLedger::open(const StoredEnergies& stored) {
   for (const double value : stored.values) scale_ = std::max(scale_, std::abs(value));
 }
 
+void EnergyLedger::store(const StoredEnergies& stored) {
+  double largest = scale_;
+  for (const double value : stored.values) largest = std::max(largest, std::abs(value));
+  stored_ = stored;
+  scale_ = largest;
+}
+
+void EnergyLedger::book(EnergyFlow flow, double amount, const StoredEnergies& stored) {
+  if (amount != 0.0) {
+    CompensatedSum& sum = flows_[term_place(flow, energy_flow_count)];
+    sum.add(amount);
+    scale_ = std::max(scale_, std::abs(sum.value()));
+  }
+  store(stored);
+}
+
 void EnergyLedger::book(const EnergyFlows& flows, const StoredEnergies& stored) {
   double largest = scale_;
   const auto add = [&](std::size_t i) {
@@ -60,9 +76,8 @@ void EnergyLedger::book(const EnergyFlows& flows, const StoredEnergies& stored) 
     if (bits << 1 == 0) continue;  // but for signs
     for (std::size_t i = 0; i < together; ++i) add(first + i);
   }
-  for (const double value : stored.values) largest = std::max(largest, std::abs(value));
-  stored_ = stored;
   scale_ = largest;
+  store(stored);
 }
 
 double EnergyLedger::lost() const {

@@ -21,6 +21,8 @@ public:
   void open(const StoredEnergies& stored);
   /// Books a step: the flows in the step, and the stored energies after it.
   void book(const EnergyFlows& flows, const StoredEnergies& stored);
+  /// The same of a step with one flow. \param amount [J]
+  void book(EnergyFlow flow, double amount, const StoredEnergies& stored);
 
   /// Stored energy of one form now [J].
   [[nodiscard]] double stored(StoredEnergy term) const { return stored_[term]; }
@@ -51,6 +53,8 @@ public:
   void load(const std::array<double, saved_size>& numbers);
 
 private:
+  void store(const StoredEnergies& stored);
+
   StoredEnergies stored_;
   double initial_ = 0.0;
   double scale_ = 0.0;

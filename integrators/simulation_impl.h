@@ -34,9 +34,7 @@ struct Simulation::Impl {
 
   void book_intervention() {
     const StoredEnergies stored = model->stored_energies(state);
-    EnergyFlows flows;
-    flows[EnergyFlow::intervention] = stored.total() - companion.ledger.total();
-    companion.ledger.book(flows, stored);
+    companion.ledger.book(EnergyFlow::intervention, stored.total() - companion.ledger.total(), stored);
   }
   /// Memory of a run from step to step is void after the state was changed from outside.
   void forget_history() {

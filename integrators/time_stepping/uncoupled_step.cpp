@@ -132,9 +132,8 @@ Flight UncoupledStep::fly(const StepInput& in, State& state, Companion& companio
   StoredEnergies stored;
   const double work = work_of(in, parts_->rule, batches_, trial, stored);
   if (!std::isfinite(stored.total())) return Flight::moved;
-  flows_[EnergyFlow::coupling_discretisation] =
-      discretisation_loss(stored.potential(), companion.ledger.potential(), work);
-  companion.ledger.book(flows_, stored);
+  const double lost = discretisation_loss(stored.potential(), companion.ledger.potential(), work);
+  companion.ledger.book(EnergyFlow::coupling_discretisation, lost, stored);
   take_end(in, parts_->rule.is_mean(), trial, state, companion);
   companion.iterations.clear();
   StepNumbers& numbers = report;

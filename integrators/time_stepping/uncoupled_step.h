@@ -89,7 +89,6 @@ private:
   Iteration iteration_ = Iteration::fixed_point;
   std::vector<CentreRow> rows_;
   std::vector<LooseBatch> batches_;
-  EnergyFlows flows_;  // zero but for what a flight loses
 };
 
 }  // namespace carom

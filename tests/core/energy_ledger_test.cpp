@@ -72,6 +72,23 @@ TEST(EnergyLedger, EachFlowStandsOnItsSide) {
   }
 }
 
+TEST(EnergyLedger, OneFlowIsBookedAsAmongOthersThatAreZero) {
+  carom_test::Random random(5);
+  EnergyLedger one, among;
+  one.open(stored(1.0, 2.0));
+  among.open(stored(1.0, 2.0));
+  for (int step = 0; step < 100; ++step) {
+    const EnergyFlow flow = flow_number(static_cast<std::size_t>(step) % energy_flow_count);
+    const double amount = step % 7 == 0 ? 0.0 : random.uniform(-3.0, 3.0);
+    const StoredEnergies now = stored(random.uniform(0.0, 1.0), random.uniform(-4.0, 4.0));
+    EnergyFlows flows;
+    flows[flow] = amount;
+    one.book(flow, amount, now);
+    among.book(flows, now);
+    EXPECT_EQ(one.save(), among.save());
+  }
+}
+
 TEST(EnergyLedger, ResidualIsWhatTheFlowsDoNotExplain) {
   EnergyLedger ledger;
   ledger.open(stored(10.0, 0.0));
