@@ -112,6 +112,7 @@ BodyContacts::BodyContacts(const Assembly& assembly, const FeatureLengths& lengt
     outlines_ = BodyOutlines();
     return;
   }
+  needs_rotations_ = outlines_.any_off_centre();
   all_may_touch_ = kinds.all;
   in_order_of_keys_ = std::is_sorted(list.begin(), list.end(),
                                      [](const auto& one, const auto& other) { return one.key < other.key; });

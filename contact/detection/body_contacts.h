@@ -63,7 +63,7 @@ public:
            law(outlines_.list()[touch.a], outlines_.list()[touch.b])->resists_rolling();
   }
   /// True if find() looks at the rotations of bodies.
-  [[nodiscard]] bool needs_rotations() const { return outlines_.any_off_centre(); }
+  [[nodiscard]] bool needs_rotations() const { return needs_rotations_; }
   /// The outlines.
   [[nodiscard]] const BodyOutlines& outlines() const { return outlines_; }
 
@@ -114,6 +114,7 @@ private:
   PairFilter filter_;
   std::vector<std::optional<Surface>> laws_;  // row-major, by material
   LawFacts law_facts_;
+  bool needs_rotations_ = false;
   bool all_may_touch_ = false;     // outlines of any two bodies
   bool in_order_of_keys_ = false;  // outlines are
 };

@@ -6,6 +6,7 @@
 #include <carom/contact/detection/ground_shapes.h>
 #include <carom/contact/detection/lasting_contacts.h>
 #include <carom/core/evaluation.h>
+#include <carom/core/function_ref.h>
 #include <carom/core/state.h>
 
 namespace carom {
@@ -18,6 +19,8 @@ struct ContactQuery {
   const GroundPlaces* after = nullptr;       ///< at the end of the step; null where no time passes
   double margin = 0.0;                       ///< largest gap [m]
   const LastingContacts* lasting = nullptr;  ///< found also where they are a little open; null: none
+  /// True of contacts with ground shapes of one piece that are not asked for; empty: none.
+  FunctionRef<bool(Index body, const ConstraintKey& key)> leaves_out = {};
 
   /// The end of the step, for a shape. \param shapes whose `places` these are
   [[nodiscard]] GroundAtEnd end_of(const GroundShapes& shapes, Index shape) const {

@@ -58,7 +58,8 @@ GroundContacts::GroundContacts(const Assembly& assembly)
     : assembly_(&assembly),
       shapes_(assembly.system()),
       features_(shapes_.empty() ? BodyFeatures() : BodyFeatures(assembly)),
-      laws_(assembly, features_, shapes_) {}
+      laws_(assembly, features_, shapes_),
+      needs_rotations_(features_.any_off_centre()) {}
 
 void GroundContacts::find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const {
   in_dimension(*assembly_, [&](auto d) { find_in<d()>(components, query, out); });
@@ -89,15 +90,6 @@ void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<
 
 Index GroundContacts::material_of(const CentreRun& centres) const {
   return centres.points == none ? centres.material : features_.points()[centres.points].material;
-}
-
-bool GroundContacts::may_touch(const CentreRow& row, const double* q) const {
-  bool may = false;
-  for_parts({0, row.count}, PointRow::most, [&](Range part) {
-    const PointRow points{q + row.q + part.begin * row.stride, row.stride, part.size()};
-    may = may || shapes_.points_within(row.shape, nullptr, points, row.reach) != 0;
-  });
-  return may;
 }
 
 bool GroundContacts::find_near(Range bodies, const CentreRun& centres, const ContactQuery& query,
@@ -159,43 +151,6 @@ bool GroundContacts::any_near(Range components, const ContactQuery& query) const
     });
   });
   return any || others > 0;
-}
-
-std::vector<CentreRow> GroundContacts::centre_rows(double margin) const {
-  std::vector<CentreRow> rows;
-  for (const CentreRun& run : features_.centres()) {
-    const BodySlot first = assembly_->layout()->bodies()[run.bodies.begin];
-    for (const Index shape : laws_.touched_by(material_of(run))) {
-      rows.push_back({shape, first.q, first.q_size, run.bodies.size(), run.reach(margin)});
-    }
-  }
-  // Circles around all other points of a body, which places as far away as a hundred million radii round
-  // less.
-  constexpr double caution = 1.0 + 1e-6;
-  for (const BodyFeature& point : features_.points()) {
-    if (!features_.is_beside_centres(point)) continue;
-    const BodySlot body = assembly_->layout()->bodies()[point.body];
-    const double off = std::hypot(point.centre[0], point.centre[1], point.centre[2]);
-    const double reach = caution * (off + point.radius + margin);
-    for (const Index shape : laws_.touched_by(point.material)) {
-      const auto same = [&](const CentreRow& row) { return row.shape == shape && row.q == body.q; };
-      const auto known = std::find_if(rows.begin(), rows.end(), same);
-      if (known != rows.end()) {
-        known->reach = std::max(known->reach, reach);
-      } else {
-        rows.push_back({shape, body.q, body.q_size, 1, reach});
-      }
-    }
-  }
-  return rows;
-}
-
-bool GroundContacts::centres_tell() const {
-  const auto is_flat = [&](Index shape) { return shapes_.is_flat(shape); };
-  return std::all_of(features_.points().begin(), features_.points().end(), [&](const BodyFeature& point) {
-    const std::span<const Index> touched = laws_.touched_by(point.material);
-    return !features_.is_beside_centres(point) || std::all_of(touched.begin(), touched.end(), is_flat);
-  });
 }
 
 /// True if no body of some runs touches at its bare centre.
@@ -274,6 +229,7 @@ void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, Shape
       }
       if (!query.lasting->lasts({feature.key, shapes_.key(shape)}, distance, turning)) continue;
     }
+    if (query.leaves_out && query.leaves_out(feature.body, {feature.key, shapes_.key(shape)})) continue;
     GroundAtEnd end = query.end_of(shapes_, shape);
     if (!shapes_.is_flat(shape)) end.step = 0.0;  // where it is touched then is not known
     Constraint& contact = next_of(out);
@@ -316,6 +272,17 @@ void GroundContacts::contact(const ContactPair& pair, const StateView& state, co
     const Gap gap = shapes_.gap(pair.ground_shape, motion, at.centre.data());
     fill(at, pair.ground_shape, gap, state, motion, {}, out);
   });
+}
+
+std::size_t GroundContacts::count_pairs(Range components) const {
+  std::size_t pairs = 0;
+  const auto add = [&](Index points, Index material) { pairs += points * laws_.touched_by(material).size(); };
+  for_runs(components, [&](const CentreRun& centres) {
+    if (centres.points == none) add(centres.bodies.size(), centres.material);
+  });
+  const Range own = features_.of(components).points;
+  for (Index i = own.begin; i < own.end; ++i) add(1, features_.points()[i].material);
+  return pairs;
 }
 
 void GroundContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {

@@ -42,7 +42,7 @@ public:
   /// Facts of the laws of all pairs.
   [[nodiscard]] const LawFacts& law_facts() const { return laws_.facts(); }
   /// True if find() looks at the rotations of bodies.
-  [[nodiscard]] bool needs_rotations() const { return features_.any_off_centre(); }
+  [[nodiscard]] bool needs_rotations() const { return needs_rotations_; }
 
   /// Appends the contacts of consecutive components that a query asks for, ordered by body, feature and
   /// shape.
@@ -61,6 +61,8 @@ public:
   [[nodiscard]] bool may_touch(const CentreRow& row, const double* q) const;
   /// Likewise those of one body.
   void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Number of pairs of points of some components and shapes that they may touch.
+  [[nodiscard]] std::size_t count_pairs(Range components) const;
   /// Appends all pairs of one component, in the order of find().
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
   /// Law of a pair.
@@ -104,6 +106,7 @@ private:
   GroundShapes shapes_;
   BodyFeatures features_;
   GroundLaws laws_;
+  bool needs_rotations_;
 };
 
 }  // namespace carom

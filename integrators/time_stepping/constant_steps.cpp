@@ -7,6 +7,14 @@
 
 namespace carom {
 
+namespace {
+
+[[noreturn]] void fail_contact(const IslandProblem& problem, const StepInput& in, StepParts& parts) {
+  parts.errors(in, in.assembly.component_of(problem.constraints().front().body())).fail_contact(problem);
+}
+
+}  // namespace
+
 /// The stages of make_step(), of bodies that nothing couples, over ground at rest.
 StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
   StepTrial& trial = parts_.trial;
@@ -14,31 +22,37 @@ StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
   capped_.begin();
   if (trial.needs.start_rotations) evaluate_positions(in.assembly, in.start.view(), trial.at_start);
   parts_.constraints.begin(in);
+  parts_.located.clear();
   for (LooseBatch& batch : uncoupled_->batches()) {
     trial.account.swept = false;
     for (const LoosePiece& piece : batch.pieces) {
       const bool by_part =
-          piece.parts.size() == 1 || parts_.constraints.may_touch(in, piece.all.components, trial);
+          flown_ == Flight::not_free &&
+          (piece.parts.size() == 1 || parts_.constraints.may_touch(in, piece.all.components, trial));
       advance_loose(by_part ? std::span(piece.parts) : std::span(&piece.all, 1), in);
     }
     trial.account.swept = true;
-    const LooseAccount account = uncoupled_->account(in, batch);
+    LooseAccount account = uncoupled_->account(in, batch);
+    if (!parts_.located.empty())
+      account.works.total += parts_.located.work_of_flights(in, parts_.rule, batch.all.bodies, trial);
     if (!balance_.book_loads(account.works, account.potentials))
       parts_.errors(in, batch.all.components.begin).fail_account(batch.all.components);
+    if (!parts_.located.empty()) book_located(batch.all.bodies, in);
   }
   balance_.report().sweeps = 1;
   balance_.report().iteration = uncoupled_->iteration();
   return balance_.finish(in);
 }
 
-/// One piece after the other.
+/// One piece after the other. Nothing touches bodies that have flown, at the start.
 void TimeStepper::advance_loose(std::span<const LooseBodies> pieces, const StepInput& in) {
-  StepTrial& trial = parts_.trial;
+  const bool flown = flown_ == Flight::moved;
   StepIsland part;
   for (const LooseBodies& piece : pieces) {
-    part.constraints = parts_.constraints.find_part(in, piece.components, trial);
+    if (!flown) part.constraints = parts_.constraints.find_part(in, piece.components, parts_.trial);
     solve_part(part, in);
-    uncoupled_->move(in, piece);
+    if (!flown) uncoupled_->move(in, piece);
+    if (parts_.located.on()) locate_under_constant_loads(piece.components, part.constraints, in, parts_);
     book_part(in);
   }
 }
@@ -49,14 +63,18 @@ void TimeStepper::solve_part(const StepIsland& part, const StepInput& in) {
   const bool refuses = parts_.options.impact_rules.energy_gain == EnergyGain::refuse;
   const auto alone = refuses ? ContactStage::Alone::as_problems : ContactStage::Alone::from_numbers;
   const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, alone, parts_.trial);
-  if (failed != nullptr) fail_contact(*failed, in);
+  if (failed != nullptr) fail_contact(*failed, in, parts_);
 }
 
-/// Their account, at the end of the step.
+/// Their account, at the end of the step, but for bodies that are hit within it.
 void TimeStepper::book_part(const StepInput& in) {
   const double* const after = parts_.trial.end.v.data();
-  balance_.book_lone(parts_.contacts.lone(), after, in, parts_.trial);
+  const auto is_hit = [&](Index body) { return parts_.located.contains_any({body, body + 1}); };
+  FunctionRef<bool(Index)> leaves_out;
+  if (!parts_.located.empty()) leaves_out = is_hit;
+  balance_.book_lone(parts_.contacts.lone(), after, in, parts_.trial, leaves_out);
   for (const IslandProblem& problem : parts_.contacts.problems()) {
+    if (leaves_out && leaves_out(problem.constraints().front().body())) continue;
     book_contact_problem(problem, after, in.end_time, in);
   }
 }
@@ -69,12 +87,16 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   if (parts_.constraints.finds_in_parts(island)) return advance_part_by_part(island, in);
   const IslandProblem* const failed =
       parts_.contacts.solve_constant(in, island, ContactStage::Alone::as_problems, parts_.trial);
-  if (failed != nullptr) fail_contact(*failed, in);
+  if (failed != nullptr) fail_contact(*failed, in, parts_);
   for (const Range components : island.batches) {
-    parts_.schedule.run(
-        ConstantStages{in, parts_.rule, components, parts_.contacts, parts_.trial, flown_ == Flight::moved});
+    const bool locates = parts_.located.on();
+    const ConstantStages stages{in, parts_.rule, components, parts_.contacts, parts_.trial, locates};
+    const auto move_on = [&](Range) {
+      locate_under_constant_loads(components, island.constraints, in, parts_);
+    };
+    parts_.schedule.run(stages, {}, locates ? SweepSchedule::BodyTask(move_on) : SweepSchedule::BodyTask());
     parts_.trial.account.swept = true;
-    if (parts_.located.on()) locate_under_constant_loads(components, island, in, parts_);
+    add_work_of_flights(components, in, parts_);
     if (!balance_.book_couplings(in, components.begin, parts_.trial))
       parts_.errors(in, components.begin).fail_account(components);
   }
@@ -85,7 +107,8 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
 /// Likewise of a batch of many bodies, part by part.
 void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput& in) {
   const Range components = island.batches.front();
-  const ConstantStages stages{in, parts_.rule, components, parts_.contacts, parts_.trial};
+  const bool locates = parts_.located.on();
+  const ConstantStages stages{in, parts_.rule, components, parts_.contacts, parts_.trial, locates};
   StepIsland part;
   const auto components_of = [&](Range bodies) {  // each is one body
     const Index begin = components.begin + (bodies.begin - stages.bodies().begin);
@@ -101,11 +124,14 @@ void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput
     parts_.trial.account.swept = false;
     solve_part(part, in);
   };
-  const auto book = [&](Range) {
+  const auto book = [&](Range bodies) {
     parts_.trial.account.swept = true;
+    if (locates) locate_under_constant_loads(components_of(bodies), part.constraints, in, parts_);
     book_part(in);
   };
   parts_.schedule.run(stages, react, book, touch);
+  if (!parts_.located.empty()) book_located(stages.bodies(), in);
+  add_work_of_flights(components, in, parts_);
   if (!balance_.book_couplings(in, components.begin, parts_.trial))
     parts_.errors(in, components.begin).fail_account(components);
 }

@@ -223,12 +223,13 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
 }
 
 void StepBalance::book_lone(const LoneContacts& contacts, const double* after, const StepInput& in,
-                            const StepTrial& trial) {
+                            const StepTrial& trial, FunctionRef<bool(Index body)> leaves_out) {
   constexpr std::string_view solver = solver_names[static_cast<std::size_t>(SolverId::single_contact)];
   const ContactBooking booking(*assembly_, after, {in.end_time, Outcome::solved, solver, 1.0}, in, result_);
   const std::span<const Constraint> constraints = contacts.constraints();
   double worst = result_.tally.worst_residual;
   for (std::size_t i = 0; i < constraints.size(); ++i) {
+    if (leaves_out && leaves_out(constraints[i].body())) continue;
     const LoneAnswer& answer = contacts.answers()[i];
     BookedWork work;
     booking.book(constraints[i], {answer.before.data(), answer.impulse.data(), answer.mode, answer.residual},

@@ -11,6 +11,29 @@ namespace {
 
 constexpr double together = 1e-8;  // shares of a step that differ by less are one instant
 
+/// A gap where it was looked at.
+struct SeenGap {
+  double share;  // of the step
+  double gap;    // [m]
+  double rate;   // [m/share]
+};
+
+/// The zero of a gap that has the values and rates of two looks, near the second: of a cubic, by Newton's
+/// method from where that look alone leads. Flights under constant loads are parabolas.
+double zero_by(const SeenGap& before, const SeenGap& last) {
+  constexpr int tries = 4;  // each squares what is wrong
+  const double far = before.share - last.share;
+  const double mean = (before.gap - last.gap) / far;
+  const double second = (3.0 * mean - 2.0 * last.rate - before.rate) / far;
+  const double third = (last.rate + before.rate - 2.0 * mean) / (far * far);
+  double way = -last.gap / last.rate;
+  for (int i = 0; i < tries; ++i) {
+    const double gap = last.gap + way * (last.rate + way * (second + way * third));
+    way -= gap / (last.rate + way * (2.0 * second + way * 3.0 * third));
+  }
+  return last.share + way;
+}
+
 }  // namespace
 
 std::span<const FlightClosing> FlightClosings::find(const LocatedBody& at, const MotionPhase& flight,
@@ -57,11 +80,13 @@ void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, st
   FlightClosing closing = list_[which];
   const double margin = std::abs(closing.gap) + caution * at.in.step * closing.speed;
   double open = flight.begin, closed = closing.share, share = closed;
-  double gap = closing.gap, rate = closing.rate;  // where it was found last
-  bool found = true;                              // at the last look
-  bool jumps = false;                             // not found at `open`: its gap has no zero
-  for (int tries = 0; tries < most_tries && !(found && gap == 0.0); ++tries) {
-    double next = found ? share - gap / (rate * at.in.step) : open;
+  SeenGap last{share, closing.gap, closing.rate * at.in.step};  // where it was found last
+  SeenGap before = last;                                        // and the time before
+  bool found = true;                                            // at the last look
+  bool jumps = false;                                           // not found at `open`: its gap has no zero
+  for (int tries = 0; tries < most_tries && !(found && last.gap == 0.0); ++tries) {
+    double next = open;
+    if (found) next = before.share == last.share ? share - last.gap / last.rate : zero_by(before, last);
     if (!(next > open && next < closed)) next = 0.5 * (open + closed);
     if (std::abs(next - share) <= close || !(next > open && next < closed)) break;
     if (jumps && closed - open <= together) break;
@@ -73,19 +98,19 @@ void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, st
     const auto contact = std::find_if(near.begin(), near.end(), is_it);
     found = contact != near.end();
     if (found) {
-      gap = contact->gap;
-      rate = contact->normal_velocity(at.trial.end.v.data());
+      before = last;
+      last = {share, contact->gap, at.in.step * contact->normal_velocity(at.trial.end.v.data())};
     }
-    if (found && gap < 0.0) {
+    if (found && last.gap < 0.0) {
       closed = share;
-      closing.rate = rate;
+      closing.rate = last.rate / at.in.step;
     } else {
       open = share;
       jumps = !found;
     }
   }
   list_[which].share = found ? share : closed;
-  list_[which].fast = (found ? rate : closing.rate) < -at.capture_speed;
+  list_[which].fast = (found ? last.rate / at.in.step : closing.rate) < -at.capture_speed;
 }
 
 }  // namespace carom

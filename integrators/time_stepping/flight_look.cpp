@@ -39,7 +39,7 @@ const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double sh
                                                 bool to_end) {
   StateView view = at.trial.end.view();
   view.time = share < 1.0 ? at.in.start.time + share * at.in.step : at.in.end_time;
-  rotate(at);
+  if (at.detector.needs_rotations()) rotate(at);
   at.detector.place(view.time, places_);
   if (to_end) at.detector.place(at.in.end_time, places_at_end_);
   found_.clear();

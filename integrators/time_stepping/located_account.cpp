@@ -43,33 +43,22 @@ double LocatedMotion::work(const StepInput& in, const StepLoads& of) const {
   return sum;
 }
 
-void locate_under_constant_loads(Range components, const StepIsland& island, const StepInput& in,
+void locate_under_constant_loads(Range components, std::span<const Constraint> contacts, const StepInput& in,
                                  StepParts& parts) {
-  LocatedImpacts& located = parts.located;
-  StepTrial& trial = parts.trial;
   const GroundPlaces& places = parts.constraints.places_at_end();
-  if (!located.take_up(in, components, island.constraints, places, trial)) return;
+  if (!parts.located.take_up(in, components, contacts, places, parts.trial)) return;
   const double* const total = in.companion.loads.total.data();
   const Range bodies = in.assembly.bodies_of(components);
-  StoredEnergies before, after;
-  for (LocatedMotion& motion : located.motions()) {
-    const Range body{motion.body(), motion.body() + 1};
-    if (body.begin < bodies.begin || body.begin >= bodies.end) continue;
-    BlockWorks &works = trial.account.works.front(), then, now;
-    parts.rule.works_constant(in, body, motion.velocities(in), trial, then);
-    add_field_potentials(in.assembly, body, trial.end.view(), trial.at_end, before);
-    located.advance(in, parts.rule, {total, total}, body, trial);
-    if (motion.failed() != nullptr) {
-      parts.errors(in, in.assembly.component_of(body.begin)).fail_contact(*motion.failed());
-    }
-    parts.rule.works_constant(in, body, motion.velocities(in), trial, now);
-    add_field_potentials(in.assembly, body, trial.end.view(), trial.at_end, after);
-    works.kinetic += now.kinetic - then.kinetic;
-    works.total += motion.work(in, {total, total}) - then.total;
+  parts.located.advance(in, parts.rule, {total, total}, bodies, parts.trial);
+  for (const LocatedMotion* motion : parts.located.motions_of(bodies)) {
+    if (motion->failed() == nullptr) continue;
+    parts.errors(in, in.assembly.component_of(motion->body())).fail_contact(*motion->failed());
   }
-  for (std::size_t i = 0; i < stored_energy_count; ++i) {
-    trial.account.potentials.values[i] += after.values[i] - before.values[i];
-  }
+}
+
+void add_work_of_flights(Range components, const StepInput& in, StepParts& parts) {
+  parts.trial.account.works.front().total +=
+      parts.located.work_of_flights(in, parts.rule, in.assembly.bodies_of(components), parts.trial);
 }
 
 }  // namespace carom

@@ -21,6 +21,15 @@ bool hits(const StepInput& in, const Constraint& contact, double faster_than) {
   return contact.normal_velocity(in.start.v.data()) < -faster_than;
 }
 
+/// How many contacts of one body each some bodies have.
+std::size_t count_of(Range bodies, std::span<const Constraint> contacts) {
+  const auto is_own = [&](const Constraint& at) {
+    return at.type == ConstraintType::contact && at.bodies == 1 && at.body() >= bodies.begin &&
+           at.body() < bodies.end;
+  };
+  return static_cast<std::size_t>(std::count_if(contacts.begin(), contacts.end(), is_own));
+}
+
 }  // namespace
 
 LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detector,
@@ -29,15 +38,11 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
       detector_(&detector),
       jumps_(assembly),
       on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
+      of_one_piece_(detector.pieces().empty() && detector.joints().empty()),
       most_impacts_(options.most_impacts),
       capture_speed_(options.capture_speed),
       refuse_jams_(options.impact_rules.refuse_jams),
       budget_(budget_of(options)) {}
-
-void LocatedImpacts::clear() {
-  in_use_ = 0;
-  order_.clear();
-}
 
 std::size_t LocatedImpacts::place(Index body) const {
   const auto before = [](const auto& entry, Index of) { return entry.first < of; };
@@ -54,6 +59,7 @@ bool LocatedImpacts::contains_any(Range bodies) const {
 void LocatedImpacts::list(std::span<const Constraint> contacts) {
   island_.contacts = contacts;
   island_.of_bodies.clear();
+  island_.next = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     for (int b = 0; b < contacts[c].bodies; ++b) {
       island_.of_bodies.emplace_back(contacts[c].blocks[static_cast<std::size_t>(b)].body, c);
@@ -64,11 +70,17 @@ void LocatedImpacts::list(std::span<const Constraint> contacts) {
 }
 
 /// Those of one body.
-std::span<const LocatedImpacts::OfBody> LocatedImpacts::of(Index body) const {
+std::span<const LocatedImpacts::OfBody> LocatedImpacts::of(Index body) {
+  const std::vector<OfBody>& all = island_.of_bodies;
   const auto before = [](const OfBody& entry, Index of) { return entry.first < of; };
-  const auto first = std::lower_bound(island_.of_bodies.begin(), island_.of_bodies.end(), body, before);
+  auto first = all.begin() + static_cast<std::ptrdiff_t>(island_.next);
+  const bool follows = first == all.begin() || before(*(first - 1), body);
+  if (!follows || (first != all.end() && before(*first, body))) {
+    first = std::lower_bound(all.begin(), all.end(), body, before);
+  }
   auto last = first;
-  while (last != island_.of_bodies.end() && last->first == body) ++last;
+  while (last != all.end() && last->first == body) ++last;
+  island_.next = static_cast<std::size_t>(last - all.begin());
   return {first, last};
 }
 
@@ -90,29 +102,47 @@ void LocatedImpacts::expect(const StepInput& in, Index component, std::span<cons
 
 bool LocatedImpacts::take_up(const StepInput& in, Range components, std::span<const Constraint> contacts,
                              const GroundPlaces& places, StepTrial& trial) {
+  list(contacts);
+  const std::size_t known = in_use_;
+  const Range bodies = assembly_->bodies_of(components);
+  // Where all that bodies can touch takes part nothing else can hit them.
+  const bool all_take_part =
+      of_one_piece_ && count_of(bodies, contacts) == detector_->ground().count_pairs(components);
+  if (!all_take_part) find_new(in, components, contacts, places, trial);
+  take_up_held(in, bodies, trial);
+  return in_use_ > known;
+}
+
+/// Takes up bodies that something touches at the end of the iterate though not at its start.
+void LocatedImpacts::find_new(const StepInput& in, Range components, std::span<const Constraint> contacts,
+                              const GroundPlaces& places, StepTrial& trial) {
   const StateView end = trial.end.view();
   if (detector_->needs_rotations()) {
     for (Index component = components.begin; component < components.end; ++component) {
       evaluate_positions(*assembly_, component, end, trial.at_end);
     }
   }
-  list(contacts);
   found_.clear();
-  detector_->find(components, {end, trial.at_end, places}, found_);
-  const std::size_t known = in_use_;
+  const auto is_known = [&](Index body, const ConstraintKey& key) { return takes_part(body, key); };
+  ContactQuery query{end, trial.at_end, places};
+  if (!contacts.empty()) query.leaves_out = is_known;
+  detector_->find(components, query, found_);
   for (const Constraint& contact : found_) {
     if (contact.gap == 0.0 && !(contact.normal_velocity(end.v) < 0.0)) continue;
     take_up_new(in, contact, trial);
   }
-  take_up_held(in, assembly_->bodies_of(components), trial);
-  return in_use_ > known;
+}
+
+/// True of a contact that takes part from the start on.
+bool LocatedImpacts::takes_part(Index body, const ConstraintKey& key) {
+  const std::span<const OfBody> own = of(body);
+  return std::any_of(own.begin(), own.end(),
+                     [&](const OfBody& of) { return island_.contacts[of.second].key == key; });
 }
 
 /// The body of a contact, unless that takes part from the start on.
 void LocatedImpacts::take_up_new(const StepInput& in, const Constraint& contact, StepTrial& trial) {
-  const std::span<const OfBody> own = of(contact.body());
-  const auto is_same = [&](const OfBody& other) { return island_.contacts[other.second].key == contact.key; };
-  if (std::none_of(own.begin(), own.end(), is_same)) take_up(in, contact.body(), trial);
+  if (!takes_part(contact.body(), contact.key)) take_up(in, contact.body(), trial);
 }
 
 /// Bodies that contacts hit at the start, or hold where they turn.
@@ -162,17 +192,16 @@ bool LocatedImpacts::any_hit() const {
                      [](const LocatedMotion& motion) { return motion.is_hit(); });
 }
 
-std::span<const LocatedMotion* const> LocatedImpacts::motions_of(Index component) {
-  const Range bodies = assembly_->components()[component].bodies;
-  of_component_.clear();
+std::span<const LocatedMotion* const> LocatedImpacts::motions_of(Range bodies) {
+  of_bodies_.clear();
   for (std::size_t at = place(bodies.begin); at < order_.size() && order_[at].first < bodies.end; ++at) {
-    of_component_.push_back(&motions_[order_[at].second]);
+    of_bodies_.push_back(&motions_[order_[at].second]);
   }
-  return of_component_;
+  return of_bodies_;
 }
 
 void LocatedImpacts::add_mean(const StepInput& in, Index component, StepTrial& trial) {
-  for (const LocatedMotion* motion : motions_of(component)) {
+  for (const LocatedMotion* motion : motions_of(assembly_->components()[component].bodies)) {
     const Range v = motion->velocities(in);
     for (const MotionPhase& phase : motion->phases()) {
       if (!phase.is_impact()) continue;
@@ -184,14 +213,15 @@ void LocatedImpacts::add_mean(const StepInput& in, Index component, StepTrial& t
 
 bool LocatedImpacts::update_jumps(const StepInput& in, const StepRule& rule, Index component, bool only_local,
                                   double tolerance, StepTrial& trial) {
-  return jumps_.update({in, rule, component, motions_of(component), tolerance}, only_local, trial);
+  const Range bodies = assembly_->components()[component].bodies;
+  return jumps_.update({in, rule, component, motions_of(bodies), tolerance}, only_local, trial);
 }
 
 /// Works of the loads of a cause along the flights, less those that its block has been given. Of loads that
 /// jump the correction is booked as dissipative: it is of loads that depend on velocities. Mean loads have
 /// it.
 void LocatedImpacts::correct_works(const StepInput& in, const StepRule& rule, Range bodies,
-                                   StepTrial& trial) const {
+                                   StepTrial& trial) {
   BlockWorks& sum = trial.account.works.front();
   const LoadJumps& jumps = trial.jumps;
   const std::vector<double>&dissipative = trial.loads_end.dissipative, &external = trial.loads_end.external;
@@ -207,9 +237,8 @@ void LocatedImpacts::correct_works(const StepInput& in, const StepRule& rule, Ra
     const Index component = assembly_->component_of(bodies.begin);
     sum.dissipative += of_jumps(assembly_->components()[component].v);
   }
-  for (std::size_t i = 0; i < in_use_; ++i) {
-    const LocatedMotion& motion = motions_[i];
-    if (motion.body() < bodies.begin || motion.body() >= bodies.end) continue;
+  for (const LocatedMotion* of_body : motions_of(bodies)) {
+    const LocatedMotion& motion = *of_body;
     const Range v = motion.velocities(in);
     const auto over_step = [&](const double* a, const double* b) { return rule.work(in, a, b, v, trial); };
     sum.total += motion.work(in, step_loads(in, rule, trial)) -
@@ -230,6 +259,16 @@ void LocatedImpacts::correct_works(const StepInput& in, const StepRule& rule, Ra
     const StepLoads loads{.start = first(start.external, external), .end = external.data()};
     sum.external += motion.work(in, loads) - over_step(loads.start, loads.end);
   }
+}
+
+double LocatedImpacts::work_of_flights(const StepInput& in, const StepRule& rule, Range bodies,
+                                       const StepTrial& trial) {
+  double sum = 0.0;
+  const double* const loads = in.companion.loads.total.data();
+  for (const LocatedMotion* motion : motions_of(bodies)) {
+    sum += motion->work(in, {loads, loads}) - rule.work_constant(in, motion->velocities(in), trial);
+  }
+  return sum;
 }
 
 void LocatedImpacts::forget_statistics() {

@@ -28,7 +28,10 @@ public:
   /// steps that end there (parted_steps.h).
   [[nodiscard]] bool on() const { return on_; }
   /// Forgets all bodies.
-  void clear();
+  void clear() {
+    in_use_ = 0;
+    order_.clear();
+  }
   /// True if no body was taken up.
   [[nodiscard]] bool empty() const { return in_use_ == 0; }
   /// Takes up bodies of a component that will be hit if their velocities at the start change little.
@@ -46,8 +49,8 @@ public:
                StepTrial& trial);
   /// True if any of some bodies was taken up.
   [[nodiscard]] bool contains_any(Range bodies) const;
-  /// Motions of all that were, in no order.
-  [[nodiscard]] std::span<LocatedMotion> motions() { return {motions_.data(), in_use_}; }
+  /// Motions of those of some bodies that were, in their order. Valid until the next call.
+  [[nodiscard]] std::span<const LocatedMotion* const> motions_of(Range bodies);
   /// A problem that was not solved; null if none.
   [[nodiscard]] const IslandProblem* first_unsolved() const;
   /// True if any body is hit within the step.
@@ -61,7 +64,11 @@ public:
   void add_mean(const StepInput& in, Index component, StepTrial& trial);
   /// Replaces, in the account of the trial, works of loads on some bodies along their mean velocities by
   /// those along their flights.
-  void correct_works(const StepInput& in, const StepRule& rule, Range bodies, StepTrial& trial) const;
+  void correct_works(const StepInput& in, const StepRule& rule, Range bodies, StepTrial& trial);
+  /// Work of loads that do not change on some bodies, along their flights, less that along their mean
+  /// velocities [J].
+  [[nodiscard]] double work_of_flights(const StepInput& in, const StepRule& rule, Range bodies,
+                                       const StepTrial& trial);
   /// Adds what solvers have counted since the last call;
   void add_statistics(ChainStatistics& sum);
   /// or forgets it, after a step that failed.
@@ -69,18 +76,21 @@ public:
 
 private:
   using OfBody = std::pair<Index, std::size_t>;  // a body, one of its contacts
+  void find_new(const StepInput& in, Range components, std::span<const Constraint> contacts,
+                const GroundPlaces& places, StepTrial& trial);
   void list(std::span<const Constraint> contacts);
-  [[nodiscard]] std::span<const OfBody> of(Index body) const;
+  [[nodiscard]] std::span<const OfBody> of(Index body);
   void take_up_new(const StepInput& in, const Constraint& contact, StepTrial& trial);
   void take_up_held(const StepInput& in, Range bodies, StepTrial& trial);
   void take_up(const StepInput& in, Index body, StepTrial& trial);
+  [[nodiscard]] bool takes_part(Index body, const ConstraintKey& key);
   [[nodiscard]] std::size_t place(Index body) const;
-  [[nodiscard]] std::span<const LocatedMotion* const> motions_of(Index component);
 
   const Assembly* assembly_;
   const Detector* detector_;
   JumpSearch jumps_;
   bool on_;
+  bool of_one_piece_;  // every shape on ground is, and nothing else touches: a point has one contact with it
   int most_impacts_;
   double capture_speed_;
   bool refuse_jams_;
@@ -88,10 +98,11 @@ private:
   std::vector<LocatedMotion> motions_;
   std::size_t in_use_ = 0;
   std::vector<std::pair<Index, std::size_t>> order_;  // body, its motion; ascending
-  std::vector<const LocatedMotion*> of_component_;    // at hand, likewise
+  std::vector<const LocatedMotion*> of_bodies_;       // at hand, likewise
   struct {
     std::span<const Constraint> contacts;
     std::vector<OfBody> of_bodies;  // of these, ascending
+    std::size_t next = 0;           // behind those of the body asked for last: bodies come in order
     std::vector<Constraint> own;    // of one body
   } island_;                        // at hand
   std::vector<Constraint> found_;

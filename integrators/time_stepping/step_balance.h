@@ -9,6 +9,7 @@
 #include <carom/core/energy_ledger.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
+#include <carom/core/function_ref.h>
 #include <carom/core/numerics/compensated_sum.h>
 #include <carom/core/numerics/fetch_ahead.h>
 #include <carom/integrators/run/companion.h>
@@ -89,9 +90,10 @@ public:
   /// \param after velocities at the end as contact sees them \param time when that is [s]
   double book_contacts(const IslandProblem& problem, const double* after, double time, const StepInput& in,
                        const StepTrial& trial);
-  /// Likewise of contacts that are alone, at the end of the step.
+  /// Likewise of contacts that are alone, at the end of the step. \param leaves_out bodies whose contacts are
+  /// not booked; empty: none
   void book_lone(const LoneContacts& contacts, const double* after, const StepInput& in,
-                 const StepTrial& trial);
+                 const StepTrial& trial, FunctionRef<bool(Index body)> leaves_out = {});
   /// Likewise those of an impact at the start of the step.
   double book_impact(const IslandProblem& problem, const double* after, const ImpactNote& note,
                      const StepInput& in, const StepTrial& trial);

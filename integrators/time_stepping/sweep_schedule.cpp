@@ -104,9 +104,13 @@ void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask 
       });
     });
   };
+  const bool finish_apart = stages.locates && !in_pieces;  // `after` moves bodies on
   const auto run_part = [&](Range some, Range velocities, Index part) {
     if (any_iterated_) stages.load(velocities);
     in_pieces ? move_pieces(some) : stages.move(some);
+    if (!finish_apart) stages.finish(some, velocities, part);
+  };
+  const auto finish_part = [&](Range some, Range velocities, Index part) {
     stages.finish(some, velocities, part);
   };
   const BodySlots& bodies = assembly_->layout()->bodies();
@@ -116,15 +120,16 @@ void SweepSchedule::run(const ConstantStages& stages, BodyTask before, BodyTask 
     const Index count = std::min(at_once, parts - next);
     const Range some{all.begin + next * size, std::min(all.begin + (next + count) * size, all.end)};
     if (before && !in_pieces) before(some);
-    if (parts == 1) {
-      run_part(all, v, 0);
-    } else {
+    const auto for_parts = [&](auto&& task) {
+      if (parts == 1) return task(all, v, 0);
       workers_.for_each(count, [&](Index i) {
         const Index first = some.begin + i * size, end = std::min(first + size, all.end);
-        run_part({first, end}, {bodies[first].v, end == all.end ? v.end : bodies[end].v}, next + i);
+        task({first, end}, {bodies[first].v, end == all.end ? v.end : bodies[end].v}, next + i);
       });
-    }
+    };
+    for_parts(run_part);
     if (after && !in_pieces) after(some);
+    if (finish_apart) for_parts(finish_part);
   }
   stages.close();
 }

@@ -75,7 +75,8 @@ public:
   }
   /// The step of bodies under constant loads, part by part, and its account. \param before,after called
   /// before and after some bodies move, whose numbers are at hand meanwhile: a piece, or a few parts of each
-  /// thread; or nothing \param touch false if surely none of them touches: then they are a large piece
+  /// thread; without `before` all; or nothing \param touch false if surely none of them touches: then they
+  /// are a large piece
   void run(const ConstantStages& stages, BodyTask before = {}, BodyTask after = {},
            BodyQuestion touch = {}) const;
   /// Loads that the iterate leads to; the change that another sweep would make, if asked for.

@@ -66,7 +66,7 @@ struct ConstantStages {
   Range components;
   const ContactStage& contacts;  ///< with all impulses
   StepTrial& trial;
-  bool moved = false;  ///< bodies have moved (UncoupledStep), and nothing touches
+  bool locates = false;  ///< bodies may be hit within the step: they move on before their account
 
   /// The bodies.
   [[nodiscard]] Range bodies() const { return in.assembly.bodies_of(components); }
@@ -77,7 +77,6 @@ struct ConstantStages {
   }
   /// Velocities and positions, as if nothing touched; then again of the bodies that impulses have changed.
   void move(Range some) const {
-    if (moved) return;
     const std::span<const Index> struck = contacts.struck(some);
     const bool all = struck.size() == some.size();
     rule.move_constant(in, some, all, trial);

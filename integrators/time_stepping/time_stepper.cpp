@@ -46,7 +46,7 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
   if (parts_.ends_at_closings())
     turning_ = std::make_unique<ContactTurning>(assembly, detector(), parts_.joints);
   if (impacts_ == nullptr && turning_ == nullptr && !options.project_gaps) {
-    if (!parts_.located.on()) parts_.constraints.allow_parts(SweepSchedule::piece_size);
+    parts_.constraints.allow_parts(SweepSchedule::piece_size);
     if (UncoupledStep::fits(parts_)) uncoupled_.emplace(parts_);
   }
   memory_.joints = &parts_.joints;
@@ -96,7 +96,7 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
     parts_.trial.begin(in);
   }
   try {
-    StepResult& result = uncoupled_ && !parts_.located.on() ? make_uncoupled_step(in) : make_step(in);
+    StepResult& result = uncoupled_ ? make_uncoupled_step(in) : make_step(in);
     parts_.contacts.add_statistics(companion.contact_statistics);
     if (parts_.located.on()) parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
@@ -223,10 +223,6 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
   throw SolverError(*failed);
 }
 
-void TimeStepper::fail_contact(const IslandProblem& problem, const StepInput& in) {
-  parts_.errors(in, in.assembly.component_of(problem.constraints().front().body())).fail_contact(problem);
-}
-
 /// Books the island, and moves its bodies out of ground shapes where that is asked for.
 void TimeStepper::book(const StepIsland& island, const StepInput& in, LoadsKnown known) {
   for (const Index component : island.components) {
@@ -256,9 +252,15 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
     book_contact_problem(problem, after, in.end_time, in);
     if (turning_ != nullptr) balance_.book_turning(turning_->work(problem));
   }
-  for (const LocatedMotion& motion : parts_.located.motions()) {
-    for (const MotionPhase& phase : motion.phases()) {
-      motion.show_end(in, phase, parts_.trial);
+  if (!all) book_located({0, none}, in);
+}
+
+/// Books impacts and contacts of those of some bodies that are hit within the step, in their order.
+void TimeStepper::book_located(Range bodies, const StepInput& in) {
+  const double* const after = parts_.trial.end.v.data();
+  for (const LocatedMotion* motion : parts_.located.motions_of(bodies)) {
+    for (const MotionPhase& phase : motion->phases()) {
+      motion->show_end(in, phase, parts_.trial);
       if (phase.constraints.empty()) continue;
       const double time = phase.end < 1.0 ? in.start.time + phase.end * in.step : in.end_time;
       book_contact_problem(phase.problem, after, time, in);

@@ -76,7 +76,7 @@ private:
   void advance_part_by_part(const StepIsland& island, const StepInput& in);
   void solve_part(const StepIsland& part, const StepInput& in);
   void book_part(const StepInput& in);
-  [[noreturn]] void fail_contact(const IslandProblem& problem, const StepInput& in);
+  void book_located(Range bodies, const StepInput& in);
   void book(const StepIsland& island, const StepInput& in, LoadsKnown known);
   void book_contacts(const StepIsland& island, const StepInput& in);
   void book_contact_problem(const IslandProblem& problem, const double* after, double time,

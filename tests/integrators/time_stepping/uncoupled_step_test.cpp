@@ -2,6 +2,7 @@
 // other step.
 
 #include <carom/carom.h>
+#include <carom/core/workers.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/time_stepping/uncoupled_step.h>
 
@@ -168,35 +169,44 @@ INSTANTIATE_TEST_SUITE_P(Iterations, UncoupledStepBits,
 
 // Of many bodies those that stand far from all others that touch are taken in large pieces. 700 are more than
 // the short path takes.
-TEST(UncoupledStep, OfManyBodiesSomeTouchInSomePieces) {
-  for (const int bodies : {100, 700}) {
-    const auto many = [&](Path path) {
-      System system = scene(path);
-      for (int i = 0; i < bodies; ++i) {
-        const bool falls = i % 70 == 5;
-        const BodyId body = system.add(RigidBody{.mass = disc(2.0, 0.1),
-                                                 .position = {0.3 * i, falls ? 0.1 + 1e-4 * i : 50.0},
-                                                 .velocity = {1.0, 0.5},
-                                                 .spin = 0.1 * i});
-        system.add(Disc{.body = body, .radius = 0.1});
-      }
-      return system;
-    };
-    const TimeStepping mode{.step = 1e-3};
-    Simulation a(many(Path::short_one), mode), b(many(Path::usual), mode);
-    std::size_t contacts = 0;
-    for (int i = 0; i < 250 && !HasFailure(); ++i) {
-      const StepReport &of_a = a.step(), &of_b = b.step();
-      expect_same(of_a, of_b);
-      expect_same(a.statistics(), b.statistics());
-      EXPECT_EQ(a.state().q, b.state().q);
-      EXPECT_EQ(a.state().v, b.state().v);
-      EXPECT_EQ(a.energy().save(), b.energy().save());
-      contacts += of_a.contacts.size();
+class UncoupledSteps : public testing::TestWithParam<std::tuple<int, ImpactTimes, int>> {};
+
+TEST_P(UncoupledSteps, OfManyBodiesSomeTouchInSomePieces) {
+  const auto [bodies, impacts, threads] = GetParam();
+  if (threads > 1 && !Workers::several_available()) GTEST_SKIP() << "the library was built without threads";
+  const auto many = [&](Path path) {
+    System system = scene(path);
+    for (int i = 0; i < bodies; ++i) {
+      const bool falls = i % 70 == 5;
+      const BodyId body = system.add(RigidBody{.mass = disc(2.0, 0.1),
+                                               .position = {0.3 * i, falls ? 0.1 + 1e-4 * i : 50.0},
+                                               .velocity = {1.0, 0.5},
+                                               .spin = 0.1 * i});
+      system.add(Disc{.body = body, .radius = 0.1});
     }
-    EXPECT_GT(contacts, 100U);
+    return system;
+  };
+  const TimeStepping mode{.step = 1e-3, .impacts = impacts};
+  TimeStepping shared_out = mode;
+  shared_out.threads = threads;
+  Simulation a(many(Path::short_one), shared_out), b(many(Path::usual), mode);
+  std::size_t contacts = 0;
+  for (int i = 0; i < 500 && !HasFailure(); ++i) {
+    const StepReport &of_a = a.step(), &of_b = b.step();
+    expect_same(of_a, of_b);
+    expect_same(a.statistics(), b.statistics());
+    EXPECT_EQ(a.state().q, b.state().q);
+    EXPECT_EQ(a.state().v, b.state().v);
+    EXPECT_EQ(a.energy().save(), b.energy().save());
+    contacts += of_a.contacts.size();
   }
+  EXPECT_GT(contacts, 100U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Sizes, UncoupledSteps,
+                         testing::Combine(testing::Values(100, 700, 1300),
+                                          testing::Values(ImpactTimes::at_step_start, ImpactTimes::located),
+                                          testing::Values(1, 2)));
 
 // Records stand where those of other contacts stood in the step before: nothing of these is left in them.
 // Runs that begin with the step have no step before.
@@ -247,6 +257,16 @@ TEST(UncoupledStep, StepsAllocateNothing) {
   const std::int64_t before = carom_test::allocations();
   for (int i = 0; i < 100; ++i) simulation.step();
   EXPECT_EQ(carom_test::allocations(), before);
+}
+
+TEST(UncoupledStep, StepsWithLocatedImpactsAllocateNothingOnceAllHaveBeenHit) {
+  Simulation simulation(scene(Path::short_one), TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located});
+  simulation.run_until(3.0);  // even the bar rests
+  const std::int64_t before = carom_test::allocations();
+  std::size_t contacts = 0;
+  for (int i = 0; i < 200; ++i) contacts += simulation.step().contacts.size();
+  EXPECT_EQ(carom_test::allocations(), before);
+  EXPECT_GT(contacts, 100U);
 }
 
 }  // namespace
