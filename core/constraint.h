@@ -195,8 +195,12 @@ struct Constraint {
   [[nodiscard]] double velocity_after(int i, const double* velocities) const {
     return times(i, velocities) - surface_velocity_after[static_cast<std::size_t>(i)];
   }
-  /// True if the velocities along its rows change although those of the bodies do not.
-  [[nodiscard]] bool turns() const { return drift[0] != 0.0 || drift[1] != 0.0 || drift[2] != 0.0; }
+  /// True if its rows turn: velocities along them change although those of the bodies do not. \param step of
+  /// how long [s] \param negligible motion by that over the step that does not count [m]
+  [[nodiscard]] bool turns(double step, double negligible) const {
+    const double all = std::abs(drift[0]) + std::abs(drift[1]) + std::abs(drift[2]);
+    return !(step * step * all <= negligible);
+  }
   /// Makes a constraint of a time step that of its first part. \param part 0 to 1: share of the step
   void shorten(double part) {
     for (std::size_t i = 0; i < surface_velocity.size(); ++i) {

@@ -33,7 +33,7 @@ void take(const Constraint& from, Constraint& to) {
 
 }  // namespace
 
-void ContactTurning::begin(std::span<const StepIsland> islands, bool alone) {
+void ContactTurning::begin(std::span<const StepIsland> islands, double step, bool alone) {
   turned_.clear();
   shared_.clear();
   mechanisms_.clear();
@@ -53,7 +53,8 @@ void ContactTurning::begin(std::span<const StepIsland> islands, bool alone) {
     const bool answered = mechanisms_.size() > before;
     for (const Constraint& contact : island.constraints) {
       if (contact.type == ConstraintType::rolling) continue;  // spins
-      if (!answered && (contact.type != ConstraintType::contact || !contact.turns())) continue;
+      if (!answered && (contact.type != ConstraintType::contact || !contact.turns(step, negligible_)))
+        continue;
       if (alone && may_be_followed(contact)) continue;
       turned_.push_back({contact, contact, contact.surface_velocity_after});
     }

@@ -34,13 +34,16 @@ namespace carom {
 /// Rows of the contacts of one step, and of the joints that answer them. Keeps memory.
 class CAROM_API ContactTurning {
 public:
-  /// All must outlive it.
-  ContactTurning(const Assembly& assembly, const Detector& detector, JointStages& joints)
-      : look_(assembly, detector), joints_(&joints), lengths_(assembly.length_scales()) {}
+  /// All must outlive it. \param negligible turning_rounding() [m]
+  ContactTurning(const Assembly& assembly, const Detector& detector, JointStages& joints, double negligible)
+      : look_(assembly, detector),
+        joints_(&joints),
+        negligible_(negligible),
+        lengths_(assembly.length_scales()) {}
 
-  /// Begins a step whose constraints are those of some islands, as they are at its start.
+  /// Begins a step whose constraints are those of some islands, as they are at its start. \param step [s]
   /// \param alone whether bodies none of whose contacts is shared are followed by themselves
-  void begin(std::span<const StepIsland> islands, bool alone);
+  void begin(std::span<const StepIsland> islands, double step, bool alone);
   /// Brings the constraints to the path of the trial, and the joints that answer them. False if they are
   /// there: nothing turns, or the end of the trial has changed no more than rounding and errors of the
   /// answers since the last time, or no less. \param residual the largest certificate of the answers
@@ -72,6 +75,7 @@ private:
 
   ContactLook look_;
   JointStages* joints_;
+  double negligible_;
   State middle_, end_;
   std::vector<Turned> turned_;     // by key and type
   std::vector<Index> shared_;      // bodies with contacts of two, ascending

@@ -110,7 +110,7 @@ void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, st
     }
   }
   list_[which].share = found ? share : closed;
-  list_[which].fast = (found ? last.rate / at.in.step : closing.rate) < -at.capture_speed;
+  list_[which].fast = (found ? last.rate / at.in.step : closing.rate) < -at.rules.capture_speed;
 }
 
 }  // namespace carom

@@ -13,4 +13,9 @@ double gap_rounding(const Assembly& assembly, const TimeStepping& options) {
                   roundings * largest_coordinate(assembly.initial_state()));
 }
 
+double turning_rounding(const TimeStepping& options) {
+  constexpr double steps = 1e6;
+  return options.tolerance / steps;
+}
+
 }  // namespace carom

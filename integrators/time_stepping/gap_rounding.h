@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Gaps that are rounding in time stepping.
+/// Gaps that are rounding in time stepping, and turns of contacts.
 
 #include <carom/core/export.h>
 #include <carom/integrators/run/time_stepping.h>
@@ -16,5 +16,9 @@ class Assembly;
 /// from the origin it is what their places are known to, if that is more: four roundings of the largest
 /// coordinate, of which a gap has two.
 [[nodiscard]] CAROM_API double gap_rounding(const Assembly& assembly, const TimeStepping& options);
+
+/// What turning makes of the gap of a contact that lasts, in a step, and does not count [m]: a million of
+/// such steps stay below TimeStepping::tolerance. Bodies at rest turn by rounding.
+[[nodiscard]] CAROM_API double turning_rounding(const TimeStepping& options);
 
 }  // namespace carom

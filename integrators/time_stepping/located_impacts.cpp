@@ -1,6 +1,7 @@
 // Problem: which bodies are hit within a step.
 
 #include <carom/integrators/time_stepping/contact_stage.h>
+#include <carom/integrators/time_stepping/gap_rounding.h>
 #include <carom/integrators/time_stepping/located_impacts.h>
 
 #include <algorithm>
@@ -39,9 +40,8 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
       jumps_(assembly),
       on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
       of_one_piece_(detector.pieces().empty() && detector.joints().empty()),
-      most_impacts_(options.most_impacts),
-      capture_speed_(options.capture_speed),
-      refuse_jams_(options.impact_rules.refuse_jams),
+      rules_{options.most_impacts, options.capture_speed, turning_rounding(options),
+             options.impact_rules.refuse_jams},
       budget_(budget_of(options)) {}
 
 std::size_t LocatedImpacts::place(Index body) const {
@@ -149,7 +149,7 @@ void LocatedImpacts::take_up_new(const StepInput& in, const Constraint& contact,
 void LocatedImpacts::take_up_held(const StepInput& in, Range bodies, StepTrial& trial) {
   for (const Constraint& contact : island_.contacts) {
     if (contact.body() < bodies.begin || contact.body() >= bodies.end) continue;
-    if (!contact.turns() && !hits(in, contact, capture_speed_)) continue;
+    if (!contact.turns(in.step, rules_.turning) && !hits(in, contact, rules_.capture_speed)) continue;
     take_up(in, contact.body(), trial);
   }
 }
@@ -167,7 +167,7 @@ void LocatedImpacts::take_up(const StepInput& in, Index body, StepTrial& trial) 
   trial.expect_impulses();
   order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(at), {body, in_use_});
   const bool struck = std::any_of(island_.own.begin(), island_.own.end(), [&](const Constraint& contact) {
-    return hits(in, contact, capture_speed_);
+    return hits(in, contact, rules_.capture_speed);
   });
   motions_[in_use_++].begin(body, island_.own, struck);
 }
@@ -175,8 +175,7 @@ void LocatedImpacts::take_up(const StepInput& in, Index body, StepTrial& trial) 
 void LocatedImpacts::advance(const StepInput& in, const StepRule& rule, const StepLoads& loads, Range bodies,
                              StepTrial& trial) {
   for (std::size_t at = place(bodies.begin); at < order_.size() && order_[at].first < bodies.end; ++at) {
-    motions_[order_[at].second].advance(
-        {in, rule, *detector_, loads, most_impacts_, capture_speed_, refuse_jams_, trial});
+    motions_[order_[at].second].advance({in, rule, *detector_, loads, rules_, trial});
   }
 }
 

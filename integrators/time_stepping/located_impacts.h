@@ -91,9 +91,7 @@ private:
   JumpSearch jumps_;
   bool on_;
   bool of_one_piece_;  // every shape on ground is, and nothing else touches: a point has one contact with it
-  int most_impacts_;
-  double capture_speed_;
-  bool refuse_jams_;
+  LocatedRules rules_;
   SweepBudget budget_;
   std::vector<LocatedMotion> motions_;
   std::size_t in_use_ = 0;

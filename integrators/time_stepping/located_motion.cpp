@@ -94,7 +94,7 @@ bool LocatedMotion::move(const LocatedBody& at) {
     const bool fast =
         std::any_of(closing.begin(), closing.end(), [](const FlightClosing& c) { return c.fast; });
     int& count = fast ? impacts : captures;
-    if (count == at.most_impacts || (!fast && now == captured)) continue;
+    if (count == at.rules.most_impacts || (!fast && now == captured)) continue;
     if (!strike(at, now, fast)) return false;
     ++count;
     if (!fast) captured = now;
@@ -106,7 +106,7 @@ bool LocatedMotion::move(const LocatedBody& at) {
 /// A phase from where the body is, without contacts.
 MotionPhase& LocatedMotion::add_phase(const LocatedBody& at, double begin, double end) {
   if (used_ == phases_.size())
-    phases_.emplace_back().problem = IslandProblem({.plastic_jams = !at.refuse_jams});
+    phases_.emplace_back().problem = IslandProblem({.plastic_jams = !at.rules.refuse_jams});
   MotionPhase& phase = phases_[used_++];
   phase.begin = begin;
   phase.end = end;
@@ -131,8 +131,9 @@ bool LocatedMotion::fly_and_turn(const LocatedBody& at, MotionPhase& flight) {
   constexpr double rounding = 1e-15;
   flight.turning_work = 0.0;
   if (!fly_once(at, flight)) return fly_along_begin(at, flight);
+  const double time = (flight.end - flight.begin) * at.in.step;
   if (std::none_of(of_flight_.begin.begin(), of_flight_.begin.end(),
-                   [](const Constraint& contact) { return contact.turns(); })) {
+                   [&](const Constraint& contact) { return contact.turns(time, at.rules.turning); })) {
     return true;
   }
   double last = std::numeric_limits<double>::infinity();

@@ -64,15 +64,21 @@ struct MotionPhase {
   [[nodiscard]] bool is_impact() const { return begin == end; }
 };
 
+/// What follows from the options.
+struct LocatedRules {
+  int most_impacts;      ///< of one body that are fast, >= 1
+  double capture_speed;  ///< a contact that closes more slowly does not rebound [m/s]
+  double turning;        ///< turning_rounding() [m]
+  bool refuse_jams;      ///< contacts that jam are an error
+};
+
 /// A step that bodies are moved through.
 struct LocatedStep {
   const StepInput& in;
   const StepRule& rule;
   const Detector& detector;
   StepLoads loads;
-  int most_impacts;      ///< of one body that are fast, >= 1
-  double capture_speed;  ///< a contact that closes more slowly does not rebound [m/s]
-  bool refuse_jams;      ///< contacts that jam are an error
+  const LocatedRules& rules;
   StepTrial& trial;
 };
 

@@ -4,6 +4,7 @@
 // of contact and impact contact/island_problem.cpp, its solvers contact/solvers/solver_chain.cpp and those
 // that it calls.
 
+#include <carom/integrators/time_stepping/gap_rounding.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <algorithm>
@@ -44,7 +45,8 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
       capped_(options.failure_directory) {
   if (!impacts_->on()) impacts_.reset();
   if (parts_.ends_at_closings())
-    turning_ = std::make_unique<ContactTurning>(assembly, detector(), parts_.joints);
+    turning_ =
+        std::make_unique<ContactTurning>(assembly, detector(), parts_.joints, turning_rounding(options));
   if (impacts_ == nullptr && turning_ == nullptr && !options.project_gaps) {
     parts_.constraints.allow_parts(SweepSchedule::piece_size);
     if (UncoupledStep::fits(parts_)) uncoupled_.emplace(parts_);
@@ -126,7 +128,7 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   const std::span<const StepIsland> islands = parts_.constraints.islands();
   if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
   projection_.lower_rebounds(in, islands);
-  if (turning_ != nullptr) turning_->begin(islands, parts_.located.on());
+  if (turning_ != nullptr) turning_->begin(islands, in.step, parts_.located.on());
   advance_all(in);
   passes_ = 1;
   while (turning_ != nullptr &&

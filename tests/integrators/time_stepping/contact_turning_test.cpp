@@ -132,4 +132,35 @@ TEST_P(ContactTurning, TakesNoMemoryOnceContactsLast) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ContactTurning, testing::Values(0, 1, 2));
 
+TEST(Turning, CountsByHowFarItMovesInAStep) {
+  Constraint contact;
+  EXPECT_FALSE(contact.turns(1.0, 0.0));
+  contact.drift[1] = -2.0;
+  EXPECT_TRUE(contact.turns(1e-3, 1.9e-6));
+  EXPECT_FALSE(contact.turns(1e-3, 2.1e-6));
+  EXPECT_TRUE(contact.turns(1e-9, 0.0));
+  contact.drift[1] = std::nan("");
+  EXPECT_TRUE(contact.turns(1e-3, 1.0));
+}
+
+// At rest bodies turn by rounding. Steps that follow that would solve their contacts several times.
+TEST(Turning, OfBodiesAtRestIsNotFollowed) {
+  constexpr int boxes = 3, steps = 100;
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.5});
+  for (int i = 0; i < boxes; ++i) {
+    const BodyId body = system.add(RigidBody{
+        .mass = box(1.0, 0.02, 0.02), .position = {i * 0.5, 0.1}, .angle = 0.3 + 0.1 * i, .spin = 3.0});
+    system.add(Polygon{.body = body,
+                       .vertices = {{-0.01, -0.01}, {0.01, -0.01}, {0.01, 0.01}, {-0.01, 0.01}},
+                       .filter = {.groups = 2, .touches = 1}});
+  }
+  Simulation simulation(system, TimeStepping{.step = 1e-3, .impacts = ImpactTimes::located});
+  simulation.run_until(1.5);
+  const std::int64_t before = simulation.contact_statistics().problems;
+  for (int i = 0; i < steps; ++i) EXPECT_EQ(simulation.step().contacts.size(), 2U * boxes);
+  EXPECT_EQ(simulation.contact_statistics().problems - before, std::int64_t{boxes} * steps);
+}
+
 }  // namespace
