@@ -21,7 +21,7 @@ StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
   balance_.begin(in);
   capped_.begin();
   if (trial.needs.start_rotations) evaluate_positions(in.assembly, in.start.view(), trial.at_start);
-  parts_.constraints.begin(in);
+  parts_.constraints.begin(in, parts_.parting());
   parts_.located.clear();
   for (LooseBatch& batch : uncoupled_->batches()) {
     trial.account.swept = false;

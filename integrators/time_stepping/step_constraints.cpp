@@ -61,12 +61,13 @@ StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& o
       islands_(assembly) {
   if (ends_at_rounding(options)) rules_.slack = rules_.rounding;
   // Without the contact that rounding opens a body at rest would fall for a step, and slide away although it
-  // stuck. Where impacts are located its closing is found within the step.
+  // stuck.
   if (options.project_gaps || rules_.keeps_slow) rules_.margin = rules_.rounding;
 }
 
-void StepConstraints::allow_rounding(double step) {
+void StepConstraints::allow_rounding(double step, bool pressed_open) {
   rules_.margin = rules_.rounding;
+  rules_.keeps_slow = rules_.keeps_slow || pressed_open;
   // Where positions are known roughly only, impacts rebound all the same.
   rules_.slowest = std::min(rules_.rounding / step, rules_.capture_speed);
 }
@@ -83,8 +84,7 @@ OpeningSlack StepConstraints::Rules::slack_of(double step) const {
   OpeningSlack openings{slack, slack};
   // Answers are wrong by more than rounding, and ground that is accelerated opens contacts by an error of the
   // step.
-  const bool keeps = keeps_slow || parting == Parting::is_free;
-  if (keeps) openings.of_pressed = std::max(slack, step * capture_speed);
+  if (keeps_slow) openings.of_pressed = std::max(slack, step * capture_speed);
   if (keeps_pressed) openings.of_pressed = std::numeric_limits<double>::infinity();
   return openings;
 }
@@ -201,10 +201,12 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
 
 std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range components,
                                                  const StepTrial& trial) {
-  if (rules_.finds_plain()) {
+  if (rules_.plain) {
     plain_.clear();
     detector_.ground().find(components, query(in, trial), plain_);
-    return plain_.all();
+    const std::span<Constraint> found = plain_.all();
+    const auto parts = [&](const Constraint& of) { return is_left_out(in, of); };
+    if (rules_.parting == Parting::acts || std::none_of(found.begin(), found.end(), parts)) return found;
   }
   single_.clear();
   find_in(in, components, trial, single_);

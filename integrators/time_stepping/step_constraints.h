@@ -43,8 +43,9 @@ public:
   /// Lets batches of more bodies than `size` go part by part: nothing asks for all their contacts at once.
   void allow_parts(Index size) { rules_.part_size = size; }
   /// Takes contacts that are closed to rounding for closed ones. \param step that rounding of velocities may
-  /// open them in [s]
-  void allow_rounding(double step);
+  /// open them in [s] \param pressed_open those that pushed in the step before may be open by more, since
+  /// answers of many contacts are wrong by more
+  void allow_rounding(double step, bool pressed_open);
 
   /// Gaps that count as closed [m].
   [[nodiscard]] double margin() const { return rules_.margin; }
@@ -66,7 +67,7 @@ public:
   }
   /// False if surely some components have no contact, after begin(), or those of such an island.
   [[nodiscard]] bool may_touch(const StepInput& in, Range components, const StepTrial& trial) const {
-    return !rules_.finds_plain() || detector_.ground().any_near(components, query(in, trial));
+    return !rules_.plain || detector_.ground().any_near(components, query(in, trial));
   }
   /// Finds the contacts of some components, likewise. Valid until the next call.
   [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
@@ -96,7 +97,7 @@ private:
     double slack;                     // opening of lasting contacts that is none [m]
     bool keeps_pressed;               // contacts with an impulse in the step before last
     bool drifts;                      // contacts of two bodies need their drifts
-    bool keeps_slow;                  // contacts that pushed in the step before and part slowly
+    bool keeps_slow;                  // contacts that pushed in the step before and part slowly, or are open
     bool turning;                     // contacts may be opened by turning, or by slack
     bool plain;                       // nothing touches but ground at rest, with laws of sliding alone
     Parting parting = Parting::acts;  // in the last find()
@@ -105,7 +106,6 @@ private:
     double margin = 0.0;              // gaps that count as closed [m]
     double slowest = 0.0;             // contacts that part more slowly do not part [m/s]
 
-    [[nodiscard]] bool finds_plain() const { return plain && parting == Parting::acts; }
     // Of a step of that length [s], which gaps may come from.
     [[nodiscard]] OpeningSlack slack_of(double step) const;
   } rules_;

@@ -33,7 +33,9 @@ struct StepParts {
         schedule(model, chosen, trial.needs),
         joints(model),
         joined(model, joints) {
-    if (ends_at_closings()) constraints.allow_rounding(options.step);
+    if (options.impacts == ImpactTimes::located) {
+      constraints.allow_rounding(options.step, ends_at_closings());
+    }
   }
 
   /// Stages of a component.
@@ -43,6 +45,11 @@ struct StepParts {
   /// Errors of one.
   [[nodiscard]] StepErrors errors(const StepInput& in, Index component) {
     return {in, component, constraints.detector(), options, trial};
+  }
+  /// What becomes of contacts that part at the start: their next closing is looked for, where impacts are
+  /// located.
+  [[nodiscard]] Parting parting() const {
+    return options.impacts == ImpactTimes::located ? Parting::is_free : Parting::acts;
   }
   /// True if impacts are located and LocatedImpacts does not find all of them: bodies touch each other,
   /// joints bind them, impacts have rules of their own, or Newton's method alone is to solve the step.

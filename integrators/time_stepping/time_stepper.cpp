@@ -123,8 +123,7 @@ void TimeStepper::give_up(const StepInput& in, Companion& companion) {
 StepResult& TimeStepper::make_step(const StepInput& in) {
   prepare(in);
   // gaps <= 0, joint limits, dry friction, at t_j
-  const Parting parting = parts_.ends_at_closings() ? Parting::is_free : Parting::acts;
-  parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial, parting);
+  parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial, parts_.parting());
   const std::span<const StepIsland> islands = parts_.constraints.islands();
   if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
   projection_.lower_rebounds(in, islands);
