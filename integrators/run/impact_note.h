@@ -15,7 +15,8 @@ struct ImpactNote {
   /// Factor of all coefficients of restitution of the impact: 1, less by EnergyGain::limit, 0 where the
   /// contacts jam (ImpactRules::refuse_jams).
   double restitution_factor = 1.0;
-  bool cut_sequence = false;    ///< a simultaneous impact with e = 0 that ended a sequence (`sequence_limit`)
+  /// An impact with e = 0 that ended a sequence (ImpactRules::sequence_limit, TimeStepping::most_impacts).
+  bool cut_sequence = false;
   double rolling_moment = 0.0;  ///< impulse moment of rolling resistance on `body` [N m s]
 };
 

@@ -129,11 +129,12 @@ struct ContactCounts {
   double energy_gained = 0.0;          ///< sum of those gains [J]
   std::int64_t lasting_gains = 0;      ///< steps in which lasting contact added energy
   double lasting_gained = 0.0;         ///< sum of those gains [J]
-  std::int64_t cut_sequences = 0;      ///< sequential impacts that ImpactRules::sequence_limit ended
-  std::int64_t scaled_impacts = 0;     ///< impacts whose restitution EnergyGain::limit scaled
-  std::int64_t plastic_jams = 0;       ///< contact problems without an answer, solved with e = 0
-  double deepest_gap = 0.0;            ///< the most negative gap found [m]
-  double worst_residual = 0.0;         ///< the largest certificate of a contact problem
+  /// Sequential impacts that ImpactRules::sequence_limit ended, impacts beyond TimeStepping::most_impacts.
+  std::int64_t cut_sequences = 0;
+  std::int64_t scaled_impacts = 0;  ///< impacts whose restitution EnergyGain::limit scaled
+  std::int64_t plastic_jams = 0;    ///< contact problems without an answer, solved with e = 0
+  double deepest_gap = 0.0;         ///< the most negative gap found [m]
+  double worst_residual = 0.0;      ///< the largest certificate of a contact problem
   /// Steps in which contact problems were solved, by the largest certificate of these: up to each of
   /// certified_residuals and above the one before it, then those above all.
   std::array<std::int64_t, certified_residuals.size() + 1> certified_steps{};

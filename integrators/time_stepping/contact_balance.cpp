@@ -268,6 +268,11 @@ double StepBalance::book_impact(const IslandProblem& problem, const double* afte
   return gain;
 }
 
+void StepBalance::tell_cut(std::size_t records) {
+  ++result_.cut_sequences;
+  for (ContactRecord& entry : result_.records().last(records)) entry.cut_sequence = true;
+}
+
 /// Rolling resistance, in the record of the contact before it.
 void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact, const double* after,
                                ImpulseWork& sum) {

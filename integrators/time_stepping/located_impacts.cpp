@@ -40,8 +40,8 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
       jumps_(assembly),
       on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
       of_one_piece_(detector.pieces().empty() && detector.joints().empty()),
-      rules_{options.most_impacts, options.capture_speed, turning_rounding(options),
-             options.impact_rules.refuse_jams},
+      rules_{options.most_impacts, options.capture_speed, gap_rounding(assembly, options),
+             turning_rounding(options), options.impact_rules.refuse_jams},
       budget_(budget_of(options)) {}
 
 std::size_t LocatedImpacts::place(Index body) const {

@@ -46,6 +46,7 @@ bool LocatedMotion::advance(const LocatedStep& step) {
   failed_ = nullptr;
   hit_ = 2.0;
   closed_.clear();
+  parted_.clear();
   for (const Constraint& contact : start_) closed_.push_back(contact.key);
   const State& start = step.in.start;
   std::copy_n(start.q.begin() + slot.q, slot.q_size, step.trial.end.q.begin() + slot.q);
@@ -80,6 +81,7 @@ bool LocatedMotion::move(const LocatedBody& at) {
     write(flight.v0, at.slot.v, at.slot.v_size, at.trial.end.v);
     for (const FlightClosing& contact : closing) closed_.push_back(contact.key);
     const double hit = closing.front().share;
+    parted_.clear();
     if (hit > now) {
       // It begins with contacts as they have turned on the longer way, which is nearly its own.
       for (std::vector<Constraint>* const list : {&flight.constraints, &of_flight_.begin}) {
@@ -87,17 +89,20 @@ bool LocatedMotion::move(const LocatedBody& at) {
       }
       flight.end = hit;
       if (!fly_and_turn(at, flight)) return false;
+      list_parted(flight);
     } else {
       --used_;
     }
     now = hit;
     const bool fast =
         std::any_of(closing.begin(), closing.end(), [](const FlightClosing& c) { return c.fast; });
-    int& count = fast ? impacts : captures;
-    if (count == at.rules.most_impacts || (!fast && now == captured)) continue;
-    if (!strike(at, now, fast)) return false;
+    const bool rebounds = fast && impacts < at.rules.most_impacts;
+    int& count = rebounds ? impacts : captures;
+    if (count == at.rules.most_impacts || (!rebounds && now == captured)) continue;
+    if (!strike(at, now, rebounds)) return false;
+    phases_[used_ - 1].cut = fast && !rebounds;
     ++count;
-    if (!fast) captured = now;
+    if (!rebounds) captured = now;
   }
   FlightLook::rotate(at);
   return true;
@@ -112,6 +117,7 @@ MotionPhase& LocatedMotion::add_phase(const LocatedBody& at, double begin, doubl
   phase.end = end;
   phase.hit = hit_;
   phase.turning_work = 0.0;
+  phase.cut = false;
   read(at.trial.end.q, at.slot.q, at.slot.q_size, phase.q);
   read(at.trial.end.v, at.slot.v, at.slot.v_size, phase.v0);
   phase.constraints.clear();
@@ -156,8 +162,37 @@ bool LocatedMotion::fly_and_turn(const LocatedBody& at, MotionPhase& flight) {
     if (change <= rounding * size || !(change < last)) break;
     last = change;
   }
+  if (any_turned && gains(at, flight)) return fly_along_begin(at, flight);
   if (any_turned) book_turning(flight);
   return true;
+}
+
+/// True if contacts with ground at rest give the body energy, by more than errors of a step that follows the
+/// motion: it turns too far in this one for its directions halfway to say anything.
+bool LocatedMotion::gains(const LocatedBody& at, const MotionPhase& flight) const {
+  constexpr double too_much = 1e-2;  // of the energies
+  for (const Constraint& contact : of_flight_.begin) {
+    if (contact.surface_velocity != std::array<double, 3>{} ||
+        contact.surface_velocity_after != std::array<double, 3>{})
+      return false;
+  }
+  const Range own{at.slot.slot, at.slot.slot + 1};
+  const double before = at.kind.kinetic_energy(own, flight.v0.data());
+  const double after = at.kind.kinetic_energy(own, flight.v1.data());
+  double work = 0.0;
+  for (Index i = 0; i < at.slot.v_size; ++i) {
+    const Index v = at.slot.v + i;
+    const double load = at.loads.at(v, flight.begin, flight.hit) + at.loads.at(v, flight.end, flight.hit);
+    work += 0.25 * (flight.end - flight.begin) * at.in.step * load * (flight.v0[i] + flight.v1[i]);
+  }
+  return after - before - work > too_much * (before + after + std::abs(work));
+}
+
+/// Contacts of a flight that have not pushed: they are open at its end, or were never pressed.
+void LocatedMotion::list_parted(const MotionPhase& flight) {
+  for (std::size_t c = 0; c < flight.constraints.size(); ++c) {
+    if (flight.problem.modes()[c] == ContactMode::open) parted_.push_back(flight.constraints[c].key);
+  }
 }
 
 /// Work on the motion of the ground that turn() made up.
@@ -262,6 +297,10 @@ bool LocatedMotion::strike(const LocatedBody& at, double share, bool fast) {
   MotionPhase& hit = add_phase(at, share, share);
   look_.find(at, share, closed_, false);
   look_.take(closed_, hit.constraints);
+  std::erase_if(hit.constraints, [&](const Constraint& contact) {
+    return contact.gap > at.rules.gap &&
+           std::find(parted_.begin(), parted_.end(), contact.key) != parted_.end();
+  });
   if (!fast) {
     for (Constraint& contact : hit.constraints) contact.remove_restitution();
   }

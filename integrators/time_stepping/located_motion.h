@@ -30,8 +30,8 @@ public:
   /// The body.
   [[nodiscard]] Index body() const { return body_; }
   /// Moves it through the step: writes its numbers in `trial.end` and what rounding cuts off. After the last
-  /// impact that is allowed, contacts that close act to the end of the step as in any other (Johansson 1999,
-  /// section 4). False if a contact problem is not solved: failed().
+  /// impact that is allowed, contacts that close do not rebound. False if a contact problem is not solved:
+  /// failed().
   bool advance(const LocatedStep& step);
   /// The problem that was not solved; null if none.
   [[nodiscard]] const IslandProblem* failed() const { return failed_; }
@@ -59,6 +59,8 @@ private:
   [[nodiscard]] bool solve(const LocatedBody& at, MotionPhase& phase);
   [[nodiscard]] bool turn(const LocatedBody& at, MotionPhase& flight);
   void book_turning(MotionPhase& flight) const;
+  [[nodiscard]] bool gains(const LocatedBody& at, const MotionPhase& flight) const;
+  void list_parted(const MotionPhase& flight);
 
   Index body_ = none;
   bool struck_ = false;
@@ -69,6 +71,7 @@ private:
     std::vector<Constraint> begin, middle, end, next_middle, next_end;
   } of_flight_;                        // its contacts then
   std::vector<ConstraintKey> closed_;  // contacts that take part in what comes next
+  std::vector<ConstraintKey> parted_;  // of these, those that have not pushed in the flight before
   std::vector<MotionPhase> phases_;
   std::size_t used_ = 0;
   double hit_ = 2.0;  // share of the first impact; above 1: none

@@ -55,6 +55,7 @@ struct MotionPhase {
   double hit = 2.0;               ///< share of the first impact before it; above 1: none
   /// Work of contacts by the turning of their directions, an error of the step [J].
   double turning_work = 0.0;
+  bool cut = false;                     ///< an impact beyond those that are allowed: it does not rebound
   std::array<double, 7> q{};            ///< coordinates at its begin
   std::array<double, 6> v0{}, v1{};     ///< velocities at its begin, at its end
   std::vector<Constraint> constraints;  ///< contacts that take part
@@ -68,6 +69,7 @@ struct MotionPhase {
 struct LocatedRules {
   int most_impacts;      ///< of one body that are fast, >= 1
   double capture_speed;  ///< a contact that closes more slowly does not rebound [m/s]
+  double gap;            ///< gap_rounding() [m]
   double turning;        ///< turning_rounding() [m]
   bool refuse_jams;      ///< contacts that jam are an error
 };

@@ -97,6 +97,8 @@ public:
   /// Likewise those of an impact at the start of the step.
   double book_impact(const IslandProblem& problem, const double* after, const ImpactNote& note,
                      const StepInput& in, const StepTrial& trial);
+  /// Marks the records booked last as those of an impact beyond the limit of impacts. \param records how many
+  void tell_cut(std::size_t records);
   /// Adds what impacts at the start of the step did.
   void add(const StepResult& impacts);
   /// Result so far.

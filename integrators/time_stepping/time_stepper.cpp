@@ -265,6 +265,7 @@ void TimeStepper::book_located(Range bodies, const StepInput& in) {
       if (phase.constraints.empty()) continue;
       const double time = phase.end < 1.0 ? in.start.time + phase.end * in.step : in.end_time;
       book_contact_problem(phase.problem, after, time, in);
+      if (phase.cut) balance_.tell_cut(phase.constraints.size());
       balance_.book_turning(phase.turning_work);
     }
   }
