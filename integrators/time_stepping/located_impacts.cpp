@@ -22,6 +22,11 @@ bool hits(const StepInput& in, const Constraint& contact, double faster_than) {
   return contact.normal_velocity(in.start.v.data()) < -faster_than;
 }
 
+/// True if a contact hits its body at the start of a step, or holds it where it turns.
+bool acts_within(const StepInput& in, const Constraint& contact, const LocatedRules& rules) {
+  return contact.turns(in.step, rules.turning) || hits(in, contact, rules.capture_speed);
+}
+
 /// How many contacts of one body each some bodies have.
 std::size_t count_of(Range bodies, std::span<const Constraint> contacts) {
   const auto is_own = [&](const Constraint& at) {
@@ -102,14 +107,18 @@ void LocatedImpacts::expect(const StepInput& in, Index component, std::span<cons
 
 bool LocatedImpacts::take_up(const StepInput& in, Range components, std::span<const Constraint> contacts,
                              const GroundPlaces& places, StepTrial& trial) {
-  list(contacts);
-  const std::size_t known = in_use_;
   const Range bodies = assembly_->bodies_of(components);
   // Where all that bodies can touch takes part nothing else can hit them.
   const bool all_take_part =
       of_one_piece_ && count_of(bodies, contacts) == detector_->ground().count_pairs(components);
+  const bool any_held = std::any_of(contacts.begin(), contacts.end(), [&](const Constraint& contact) {
+    return acts_within(in, contact, rules_);
+  });
+  if (all_take_part && !any_held) return false;
+  list(contacts);
+  const std::size_t known = in_use_;
   if (!all_take_part) find_new(in, components, contacts, places, trial);
-  take_up_held(in, bodies, trial);
+  if (any_held) take_up_held(in, bodies, trial);
   return in_use_ > known;
 }
 
@@ -149,8 +158,7 @@ void LocatedImpacts::take_up_new(const StepInput& in, const Constraint& contact,
 void LocatedImpacts::take_up_held(const StepInput& in, Range bodies, StepTrial& trial) {
   for (const Constraint& contact : island_.contacts) {
     if (contact.body() < bodies.begin || contact.body() >= bodies.end) continue;
-    if (!contact.turns(in.step, rules_.turning) && !hits(in, contact, rules_.capture_speed)) continue;
-    take_up(in, contact.body(), trial);
+    if (acts_within(in, contact, rules_)) take_up(in, contact.body(), trial);
   }
 }
 
