@@ -8,6 +8,17 @@
 
 namespace carom {
 
+namespace {
+
+/// True if the rate of a driver may jump in the step, or at one of its ends. \param breaks of drivers,
+/// ascending
+bool may_jump(const std::vector<double>& breaks, const StepInput& in) {
+  const auto next = std::lower_bound(breaks.begin(), breaks.end(), in.start.time);
+  return next != breaks.end() && *next <= in.end_time;
+}
+
+}  // namespace
+
 JointStages::JointStages(const Assembly& assembly) : assembly_(&assembly) {
   const auto components = static_cast<Index>(assembly.components().size());
   for (Index component = 0; component < components; ++component) {
@@ -55,7 +66,14 @@ JointStage::JointStage(const Assembly& assembly, Index component, Index first_ro
       answer_(component, joints_.rows.at_end()),
       untouched_(joints_, first_row),
       total_(joints_.impulse),
-      bounds_(assembly, component, joints_.rows.at_end()) {}
+      bounds_(assembly, component, joints_.rows.at_end()) {
+  for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
+    const Range own = assembly.joints(component, kind);
+    for (Index joint = own.begin; joint < own.end; ++joint)
+      assembly.joint_kinds()[kind]->discontinuity_times(joint, breaks_);
+  }
+  std::sort(breaks_.begin(), breaks_.end());
+}
 
 void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
                        StepTrial& trial) {
@@ -63,8 +81,11 @@ void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, 
   joints_.clear(joints_.arrays->dv_contact);
   struck_ = std::any_of(contacts.constraints.begin(), contacts.constraints.end(),
                         [](const Constraint& constraint) { return !constraint.has_dry_friction(); });
-  guessed_ = guesses && contacts.problem == nullptr && untouched_.start(in, rule, trial);
-  if (!guessed_) begin_at_start(in, rule.is_mean() && contacts.problem == nullptr, trial);
+  // Mean rows give velocities by their mean with those before: behind a jump they would alternate for ever.
+  const bool mean = rule.is_mean() && contacts.problem == nullptr && !may_jump(breaks_, in);
+  guessed_ =
+      guesses && contacts.problem == nullptr && mean == rule.is_mean() && untouched_.start(in, rule, trial);
+  if (!guessed_) begin_at_start(in, mean, trial);
   if (!struck_ && !answer_.rows().depends_on_time()) return;
   answer_.place(in, trial);
   if (!struck_) return;

@@ -129,6 +129,7 @@ private:
   std::vector<double> total_;  // L, and what contact adds
   FrictionBounds bounds_;      // of friction in the joints
   FrictionBoundSolver bound_solver_;
+  std::vector<double> breaks_;  // of drivers, ascending [s]
 };
 
 /// Joints of all components of a model. Stages share arrays.
