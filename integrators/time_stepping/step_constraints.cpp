@@ -122,22 +122,30 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
 /// True of a contact that parts and does not act. One that is deeper acts: nothing looks for its closing; one
 /// that stays closed to rounding over a step, for it would close in it again and again; and one that pushed
 /// in the step before, if it parts slowly: as its answer was to keep it closed, it parts by what that was
-/// wrong.
-bool StepConstraints::is_left_out(const StepInput& in, const Constraint& constraint) const {
+/// wrong. One that parts and acts may come back as fast, which does no work: held where it has come to, it
+/// would gain what loads take to draw it back.
+bool StepConstraints::is_freed(const StepInput& in, Constraint& constraint) const {
   constexpr double noise = 1e-12;  // of the velocities along a normal
-  if (constraint.has_dry_friction() || constraint.gap < -rules_.rounding) return false;
+  if (constraint.has_dry_friction()) return false;
   const double* const v = in.start.v.data();
   const double rate = constraint.velocity(0, v);
-  if (!(rate > std::max(noise * constraint.speed(0, v), rules_.slowest))) return false;
-  return rate > rules_.capture_speed || !lasting_.is_pressed(constraint.key);
+  if (!(rate > rules_.slowest)) return false;
+  const bool near = !(constraint.gap < -rules_.rounding), parts = rate > noise * constraint.speed(0, v);
+  if (near && parts && (rate > rules_.capture_speed || !lasting_.is_pressed(constraint.key))) return true;
+  constraint.allowed_approach = std::max(constraint.allowed_approach, rate);
+  return false;
 }
 
-/// A contact that parts and acts may come back as fast, which does no work: held where it has come to, it
-/// would gain what loads take to draw it back.
-void StepConstraints::allow_return(const StepInput& in, Constraint& constraint) const {
-  if (rules_.parting != Parting::is_free || constraint.has_dry_friction()) return;
-  const double rate = constraint.velocity(0, in.start.v.data());
-  if (rate > rules_.slowest) constraint.allowed_approach = std::max(constraint.allowed_approach, rate);
+/// Takes those that do not act out of a list, from its place `first` on.
+void StepConstraints::free_parting(const StepInput& in, std::size_t first,
+                                   std::vector<Constraint>& out) const {
+  std::size_t kept = first;
+  for (std::size_t i = first; i < out.size(); ++i) {
+    if (is_freed(in, out[i])) continue;
+    if (kept < i) out[kept] = out[i];
+    ++kept;
+  }
+  out.resize(kept);
 }
 
 void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,
@@ -145,10 +153,7 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   const std::size_t first = out.size();
   const StateView start = in.start.view();
   detector_.find(components, query(in, trial), out);
-  if (rules_.parting == Parting::is_free) {
-    const auto parts = [&](const Constraint& found) { return is_left_out(in, found); };
-    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), parts), out.end());
-  }
+  if (rules_.parting == Parting::is_free) free_parting(in, first, out);
   // Components with joints come alone.
   if (detector_.joints().has_friction() && components.size() == 1) {
     const auto friction = static_cast<std::ptrdiff_t>(out.size());
@@ -160,7 +165,6 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   if (out.size() == first) return;
   const std::span<Constraint> found(out.data() + first, out.size() - first);
   take_sticking(found);
-  for (Constraint& constraint : found) allow_return(in, constraint);
   // Friction in joints comes last.
   if (found.back().has_dry_friction())
     share_impact_restitution(found, in.start.v.data(), rules_.capture_speed);
@@ -205,8 +209,10 @@ std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range comp
     plain_.clear();
     detector_.ground().find(components, query(in, trial), plain_);
     const std::span<Constraint> found = plain_.all();
-    const auto parts = [&](const Constraint& of) { return is_left_out(in, of); };
-    if (rules_.parting == Parting::acts || std::none_of(found.begin(), found.end(), parts)) return found;
+    if (rules_.parting == Parting::acts) return found;
+    bool all_act = true;
+    for (Constraint& contact : found) all_act = !is_freed(in, contact) && all_act;
+    if (all_act) return found;
   }
   single_.clear();
   find_in(in, components, trial, single_);
@@ -224,7 +230,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     std::erase_if(search_.touching, [&](const BodyTouch& touch) {
       Constraint written;
       bodies.write(touch, in.start.view(), written);
-      return is_left_out(in, written);
+      return is_freed(in, written);
     });
     touching = search_.touching;
   }
@@ -255,7 +261,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
       bodies.write_rows(touching[source], search_, in.start.view(), out);
     }
     if (sticks) take_sticking({&out, 1});
-    allow_return(in, out);
+    if (rules_.parting == Parting::is_free) static_cast<void>(is_freed(in, out));
   }
   islands_.take(constraints_);
   if (detector_.joints().has_friction()) share_restitution(islands(), in, rules_.capture_speed);
