@@ -172,7 +172,8 @@ INSTANTIATE_TEST_SUITE_P(Iterations, UncoupledStepBits,
 class UncoupledSteps : public testing::TestWithParam<std::tuple<int, ImpactTimes, int>> {};
 
 TEST_P(UncoupledSteps, OfManyBodiesSomeTouchInSomePieces) {
-  const auto [bodies, impacts, threads] = GetParam();
+  const int bodies = std::get<0>(GetParam()), threads = std::get<2>(GetParam());
+  const ImpactTimes impacts = std::get<1>(GetParam());
   if (threads > 1 && !Workers::several_available()) GTEST_SKIP() << "the library was built without threads";
   const auto many = [&](Path path) {
     System system = scene(path);
