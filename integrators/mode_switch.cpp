@@ -111,9 +111,7 @@ void forget_opened(const Assembly& assembly, const Detector& detector, const Sta
 /// Books the energy of the change, and what solvers counted.
 void book(const StoredEnergies& stored, const ChainStatistics& solved, std::size_t contacts,
           Companion& companion) {
-  EnergyFlows flows;
-  flows[EnergyFlow::mode_switch] = companion.ledger.total() - stored.total();
-  companion.ledger.book(flows, stored);
+  companion.ledger.book(EnergyFlow::mode_switch, companion.ledger.total() - stored.total(), stored);
   companion.contact_statistics += solved;
   companion.statistics.events[static_cast<std::size_t>(EventKind::mode_switch)] +=
       static_cast<std::int64_t>(contacts);

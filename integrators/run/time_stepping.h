@@ -103,8 +103,8 @@ struct TimeStepping {
 
   ImpactTimes impacts = ImpactTimes::at_step_start;  ///< when within a step bodies are hit
   /// Of impacts that are located: the most of one body in one step, >= 1, and as many slow ones. After them
-  /// contacts that close do not rebound (ImpactNote::cut_sequence); so the step ends although bounces may
-  /// accumulate in it.
+  /// contacts that close do not rebound (ImpactNote::cut_sequence), and after as many of these act to the end
+  /// of the step; so the step ends although bounces may accumulate in it.
   int most_impacts = 10;
 
   ForceRule force_rule = ForceRule::trapezoidal;  ///< impulse of the force elements

@@ -7,14 +7,6 @@
 
 namespace carom {
 
-namespace {
-
-[[noreturn]] void fail_contact(const IslandProblem& problem, const StepInput& in, StepParts& parts) {
-  parts.errors(in, in.assembly.component_of(problem.constraints().front().body())).fail_contact(problem);
-}
-
-}  // namespace
-
 /// The stages of make_step(), of bodies that nothing couples, over ground at rest.
 StepResult& TimeStepper::make_uncoupled_step(const StepInput& in) {
   StepTrial& trial = parts_.trial;
@@ -63,7 +55,7 @@ void TimeStepper::solve_part(const StepIsland& part, const StepInput& in) {
   const bool refuses = parts_.options.impact_rules.energy_gain == EnergyGain::refuse;
   const auto alone = refuses ? ContactStage::Alone::as_problems : ContactStage::Alone::from_numbers;
   const IslandProblem* const failed = parts_.contacts.solve_constant(in, part, alone, parts_.trial);
-  if (failed != nullptr) fail_contact(*failed, in, parts_);
+  if (failed != nullptr) parts_.errors(in, *failed).fail_contact(*failed);
 }
 
 /// Their account, at the end of the step, but for bodies that are hit within it.
@@ -87,7 +79,7 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   if (parts_.constraints.finds_in_parts(island)) return advance_part_by_part(island, in);
   const IslandProblem* const failed =
       parts_.contacts.solve_constant(in, island, ContactStage::Alone::as_problems, parts_.trial);
-  if (failed != nullptr) fail_contact(*failed, in, parts_);
+  if (failed != nullptr) parts_.errors(in, *failed).fail_contact(*failed);
   for (const Range components : island.batches) {
     const bool locates = parts_.located.on();
     const ConstantStages stages{in, parts_.rule, components, parts_.contacts, parts_.trial, locates};

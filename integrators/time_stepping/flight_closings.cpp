@@ -19,14 +19,16 @@ struct SeenGap {
 };
 
 /// The zero of a gap that has the values and rates of two looks, near the second: of a cubic, by Newton's
-/// method from where that look alone leads. Flights under constant loads are parabolas.
+/// method from where that look alone leads, which is all if both are one. Flights under constant loads are
+/// parabolas.
 double zero_by(const SeenGap& before, const SeenGap& last) {
   constexpr int tries = 4;  // each squares what is wrong
+  double way = -last.gap / last.rate;
   const double far = before.share - last.share;
+  if (far == 0.0) return last.share + way;
   const double mean = (before.gap - last.gap) / far;
   const double second = (3.0 * mean - 2.0 * last.rate - before.rate) / far;
   const double third = (last.rate + before.rate - 2.0 * mean) / (far * far);
-  double way = -last.gap / last.rate;
   for (int i = 0; i < tries; ++i) {
     const double gap = last.gap + way * (last.rate + way * (second + way * third));
     way -= gap / (last.rate + way * (2.0 * second + way * 3.0 * third));
@@ -85,8 +87,7 @@ void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, st
   bool found = true;                                            // at the last look
   bool jumps = false;                                           // not found at `open`: its gap has no zero
   for (int tries = 0; tries < most_tries && !(found && last.gap == 0.0); ++tries) {
-    double next = open;
-    if (found) next = before.share == last.share ? share - last.gap / last.rate : zero_by(before, last);
+    double next = found ? zero_by(before, last) : open;
     if (!(next > open && next < closed)) next = 0.5 * (open + closed);
     if (std::abs(next - share) <= close || !(next > open && next < closed)) break;
     if (jumps && closed - open <= together) break;

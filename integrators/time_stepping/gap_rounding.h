@@ -17,7 +17,7 @@ class Assembly;
 /// coordinate, of which a gap has two.
 [[nodiscard]] CAROM_API double gap_rounding(const Assembly& assembly, const TimeStepping& options);
 
-/// What turning makes of the gap of a contact that lasts, in a step, and does not count [m]: a million of
+/// Change of the gap of a contact that lasts, by turning in a step, that does not count [m]: a million of
 /// such steps stay below TimeStepping::tolerance. Bodies at rest turn by rounding.
 [[nodiscard]] CAROM_API double turning_rounding(const TimeStepping& options);
 

@@ -33,13 +33,7 @@ double LocatedMotion::work(const StepInput& in, const StepLoads& of) const {
   loads.at_impact = is_hit();
   const Range v = velocities(in);
   double sum = 0.0;
-  for (const MotionPhase& phase : phases()) {
-    for (Index i = 0; i < v.size(); ++i) {
-      const double load =
-          loads.at(v.begin + i, phase.begin, phase.hit) + loads.at(v.begin + i, phase.end, phase.hit);
-      sum += 0.25 * (phase.end - phase.begin) * in.step * load * (phase.v0[i] + phase.v1[i]);
-    }
-  }
+  for (const MotionPhase& phase : phases()) phase.add_work(loads, v, in.step, sum);
   return sum;
 }
 
@@ -51,8 +45,7 @@ void locate_under_constant_loads(Range components, std::span<const Constraint> c
   const Range bodies = in.assembly.bodies_of(components);
   parts.located.advance(in, parts.rule, {total, total}, bodies, parts.trial);
   for (const LocatedMotion* motion : parts.located.motions_of(bodies)) {
-    if (motion->failed() == nullptr) continue;
-    parts.errors(in, in.assembly.component_of(motion->body())).fail_contact(*motion->failed());
+    if (motion->failed() != nullptr) parts.errors(in, *motion->failed()).fail_contact(*motion->failed());
   }
 }
 

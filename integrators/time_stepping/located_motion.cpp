@@ -180,11 +180,7 @@ bool LocatedMotion::gains(const LocatedBody& at, const MotionPhase& flight) cons
   const double before = at.kind.kinetic_energy(own, flight.v0.data());
   const double after = at.kind.kinetic_energy(own, flight.v1.data());
   double work = 0.0;
-  for (Index i = 0; i < at.slot.v_size; ++i) {
-    const Index v = at.slot.v + i;
-    const double load = at.loads.at(v, flight.begin, flight.hit) + at.loads.at(v, flight.end, flight.hit);
-    work += 0.25 * (flight.end - flight.begin) * at.in.step * load * (flight.v0[i] + flight.v1[i]);
-  }
+  flight.add_work(at.loads, velocities(at.in), at.in.step, work);
   return after - before - work > too_much * (before + after + std::abs(work));
 }
 

@@ -30,7 +30,8 @@ public:
   /// The body.
   [[nodiscard]] Index body() const { return body_; }
   /// Moves it through the step: writes its numbers in `trial.end` and what rounding cuts off. After the last
-  /// impact that is allowed, contacts that close do not rebound. False if a contact problem is not solved:
+  /// impact that is allowed, contacts that close do not rebound; after as many of these they act to the end
+  /// of the step as in any other (Johansson 1999, section 4). False if a contact problem is not solved:
   /// failed().
   bool advance(const LocatedStep& step);
   /// The problem that was not solved; null if none.

@@ -63,9 +63,17 @@ struct MotionPhase {
 
   /// True of an impact.
   [[nodiscard]] bool is_impact() const { return begin == end; }
+  /// Adds the work of loads in it [J]. \param v velocities of the body among all \param step length of the
+  /// whole step [s]
+  void add_work(const StepLoads& loads, Range v, double step, double& sum) const {
+    for (Index i = 0; i < v.size(); ++i) {
+      const double load = loads.at(v.begin + i, begin, hit) + loads.at(v.begin + i, end, hit);
+      sum += 0.25 * (end - begin) * step * load * (v0[i] + v1[i]);
+    }
+  }
 };
 
-/// What follows from the options.
+/// Numbers that follow from the options.
 struct LocatedRules {
   int most_impacts;      ///< of one body that are fast, >= 1
   double capture_speed;  ///< a contact that closes more slowly does not rebound [m/s]

@@ -46,8 +46,11 @@ struct StepParts {
   [[nodiscard]] StepErrors errors(const StepInput& in, Index component) {
     return {in, component, constraints.detector(), options, trial};
   }
-  /// What becomes of contacts that part at the start: their next closing is looked for, where impacts are
-  /// located.
+  /// Errors of the component of the first body of a contact problem.
+  [[nodiscard]] StepErrors errors(const StepInput& in, const IslandProblem& problem) {
+    return errors(in, assembly->component_of(problem.constraints().front().body()));
+  }
+  /// Contacts that part at the start are free where impacts are located: their next closing is looked for.
   [[nodiscard]] Parting parting() const {
     return options.impacts == ImpactTimes::located ? Parting::is_free : Parting::acts;
   }

@@ -278,7 +278,7 @@ void TimeStepper::book_contact_problem(const IslandProblem& problem, const doubl
   const bool refused = gain > 0.0 && parts_.options.impact_rules.energy_gain == EnergyGain::refuse;
   const bool kept = capped_.wants(problem);
   if (!refused && !kept) return;
-  const StepErrors errors = parts_.errors(in, in.assembly.component_of(problem.constraints().front().body()));
+  const StepErrors errors = parts_.errors(in, problem);
   if (refused) errors.refuse_gain(problem, gain);
   capped_.keep(errors.failure_of(problem));
 }

@@ -126,8 +126,8 @@ TEST_P(CoarseSteps, GainNothing) {
 INSTANTIATE_TEST_SUITE_P(Steps, CoarseSteps,
                          testing::Combine(testing::Values(0.01, 0.05, 0.2), testing::Values(1, 2, 10)));
 
-// What a lasting contact on ground that is curved gives a body in a step is an error of the step; where it
-// turns too far the contact acts along its direction at the start.
+// Energy from a lasting contact on curved ground is an error of the step; where the body turns too far the
+// contact acts along its direction at the start.
 TEST(LocatedPartings, ABarThatSlidesOverAPegGainsLittleInAStep) {
   for (const double step : {0.05, 0.02, 0.01}) {
     double largest = 0.0;
