@@ -4,7 +4,6 @@
 /// Particles: bodies with a position only.
 
 #include <carom/core/body_kind.h>
-#include <carom/core/column.h>
 #include <carom/core/part.h>
 #include <carom/core/part_check.h>
 #include <carom/core/space.h>

@@ -33,7 +33,6 @@ set(carom_public_headers
     contact/solvers/sweep_budget.h
     contact/solvers/sweep_watch.h
     core/body_kind.h
-    core/column.h
     core/constraint.h
     core/contact_filter.h
     core/difference_derivatives.h
@@ -66,6 +65,7 @@ set(carom_public_headers
     core/numerics/compensated_sum.h
     core/numerics/pair.h
     core/numerics/time_difference.h
+    core/owner.h
     core/part.h
     core/part_check.h
     core/part_type.h
@@ -78,7 +78,6 @@ set(carom_public_headers
     core/surface.h
     core/system.h
     core/text_table.h
-    core/time_course.h
     core/trace_comparison.h
     integrators/callback_id.h
     integrators/contact_forces.h

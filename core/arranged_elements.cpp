@@ -1,4 +1,5 @@
 #include <carom/core/arranged_elements.h>
+#include <carom/core/registry.h>
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #include <carom/core/arranged_joints.h>
 #include <carom/core/errors.h>
 #include <carom/core/numerics/union_find.h>
+#include <carom/core/registry.h>
 
 #include <algorithm>
 #include <string>

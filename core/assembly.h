@@ -10,6 +10,7 @@
 #include <carom/core/export.h>
 #include <carom/core/force_kind.h>
 #include <carom/core/layout.h>
+#include <carom/core/registry.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
 #include <carom/core/workers.h>

@@ -37,22 +37,21 @@ void solve_in_place(DenseMatrix& matrix, DenseVector& right) {
 }  // namespace
 
 bool advance_trapezoidal(double step, const double* z0, const double* rates0, InternalRates rates_at_end,
-                         std::span<double> z, std::span<double> memory) {
+                         double* z, std::size_t number, double* memory) {
   constexpr int most_steps = 50;
   // Changes of this part of the variables are their rounding.
   constexpr double negligible = 1e-15;
   constexpr double difference = 1e-7;  // relative, for one-sided differences
 
-  const auto count = static_cast<Eigen::Index>(z.size());
+  const auto count = static_cast<Eigen::Index>(number);
   const double half = 0.5 * step;
   const Eigen::Map<const Eigen::VectorXd> start(z0, count), start_rates(rates0, count);
-  DenseVector now(z.data(), count);
-  DenseVector rates(memory.data(), count), moved(rates.data() + count, count),
-      gap(moved.data() + count, count);
+  DenseVector now(z, count);
+  DenseVector rates(memory, count), moved(rates.data() + count, count), gap(moved.data() + count, count);
   DenseMatrix slope(gap.data() + count, count, count);
   double last = 0.0;
   for (int i = 0; i < most_steps; ++i) {
-    rates_at_end(z.data(), rates.data());
+    rates_at_end(z, rates.data());
     gap = now - start - half * (start_rates + rates);
     if (!gap.allFinite()) return false;
     slope.setIdentity();
@@ -61,7 +60,7 @@ bool advance_trapezoidal(double step, const double* z0, const double* rates0, In
       const double size = std::max({std::abs(kept), std::abs(z0[column]), half * std::abs(rates[column])});
       const double move = size > 0.0 ? difference * size : difference;
       now[column] = kept + move;
-      rates_at_end(z.data(), moved.data());
+      rates_at_end(z, moved.data());
       now[column] = kept;
       slope.col(column) -= half / move * (moved - rates);
     }

@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 
 namespace carom {
 
@@ -21,10 +20,11 @@ using InternalRates = FunctionRef<void(const double* z, double* rates)>;
 
 /// Solves for `z` (in: a guess). Returns false if the iteration does not settle. \param step h [s] \param z0
 /// variables at the start \param rates0 r(t0, z0) \param rates_at_end may read `z` through other ways too,
-/// since z is the memory that is being changed \param memory trapezoidal_memory(z.size()) numbers
+/// since z is the memory that is being changed \param number of variables
+/// \param memory trapezoidal_memory(number) numbers
 [[nodiscard]] CAROM_API bool advance_trapezoidal(double step, const double* z0, const double* rates0,
-                                                 InternalRates rates_at_end, std::span<double> z,
-                                                 std::span<double> memory);
+                                                 InternalRates rates_at_end, double* z, std::size_t number,
+                                                 double* memory);
 
 /// The same for N variables, in memory of its own.
 template <int N, class F>
@@ -32,7 +32,7 @@ template <int N, class F>
                                        double* z) {
   constexpr auto count = static_cast<std::size_t>(N);
   std::array<double, trapezoidal_memory(count)> memory;
-  return advance_trapezoidal(step, z0, rates0, rates_at_end, std::span<double>(z, count), memory);
+  return advance_trapezoidal(step, z0, rates0, rates_at_end, z, count, memory.data());
 }
 
 }  // namespace carom

@@ -54,6 +54,8 @@ Layout::Layout(int dimension, Index token, const std::vector<BodySlot>& bodies)
   }
 }
 
+void Layout::place_joints(std::shared_ptr<const JointTable> joints) { joints_ = std::move(joints); }
+
 void Layout::place_internals(std::vector<InternalSlot> internals) {
   internals_ = std::move(internals);
   std::sort(internals_.begin(), internals_.end(),

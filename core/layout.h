@@ -131,7 +131,7 @@ public:
   void place_internals(std::vector<InternalSlot> internals);
 
   /// Tells the joints, likewise.
-  void place_joints(std::shared_ptr<const JointTable> joints) { joints_ = std::move(joints); }
+  void place_joints(std::shared_ptr<const JointTable> joints);
 
   [[nodiscard]] int dimension() const { return dimension_; }            ///< 2 or 3
   [[nodiscard]] Index q_size() const { return q_size_; }                ///< number of coordinates

@@ -1,6 +1,7 @@
 #include <carom/core/part_check.h>
 
 #include <carom/core/errors.h>
+#include <carom/core/registry.h>
 #include <carom/core/surface.h>
 #include <carom/core/system.h>
 

@@ -81,8 +81,8 @@ struct Space<2> {
   static double rational_turn(double delta) { return 2.0 * std::atan(0.5 * delta); }
   /// Tangent of a contact: the normal turned clockwise by 90 degrees (Johansson 1999, figure 1).
   static std::array<Vec<2>, 1> tangent_frame(const Vec<2>& n) { return {Vec<2>(n[1], -n[0])}; }
-  /// Row of a contact velocity a.(v + omega x r) with respect to the spin.
-  static Vec<1> spin_row(const Vec<2>& a, const Vec<2>& r) { return Vec<1>(r[0] * a[1] - r[1] * a[0]); }
+  /// Writes the row of a contact velocity a.(v + omega x r) with respect to the spin.
+  static void spin_row(const Vec<2>& a, const Vec<2>& r, double* row) { row[0] = r[0] * a[1] - r[1] * a[0]; }
 };
 
 /// Space, as far as particles need it.

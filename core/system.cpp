@@ -1,4 +1,4 @@
-#include <carom/core/system_notes.h>
+#include <carom/core/stored_parts.h>
 
 #include <algorithm>
 #include <atomic>
@@ -22,12 +22,7 @@ System::System() : token_(next_token()) {}
 System::System(const System& other)
     : token_(other.token_),
       dimension_(other.dimension_),
-      bodies_(other.bodies_),
-      forces_(other.forces_),
-      joints_(other.joints_),
-      shapes_(other.shapes_),
-      ground_shapes_(other.ground_shapes_),
-      notes_(other.notes_ ? std::make_unique<Notes>(*other.notes_) : nullptr) {}
+      stored_(other.stored_.get() == nullptr ? nullptr : new Stored(*other.stored_)) {}
 System::System(System&& other) noexcept = default;
 System& System::operator=(const System& other) {
   System copy(other);
@@ -37,18 +32,24 @@ System& System::operator=(const System& other) {
 System& System::operator=(System&& other) noexcept = default;
 System::~System() = default;
 
-const System::Notes& System::notes() const {
-  static const Notes nothing;
-  return notes_ ? *notes_ : nothing;
+const System::Stored& System::stored() const {
+  static const Stored nothing;
+  return stored_.get() == nullptr ? nothing : *stored_;
 }
-System::Notes& System::notes() {
-  if (!notes_) notes_ = std::make_unique<Notes>();
-  return *notes_;
+System::Stored& System::stored() {
+  if (stored_.get() == nullptr) stored_ = Owner<Stored>(new Stored);
+  return *stored_;
 }
+
+const Registry<BodyKind>& System::body_kinds() const { return stored().bodies; }
+const Registry<ForceKind>& System::force_kinds() const { return stored().forces; }
+const Registry<JointKind>& System::joint_kinds() const { return stored().joints; }
+const Registry<ShapeKind>& System::shape_kinds() const { return stored().shapes; }
+const Registry<GroundShapeKind>& System::ground_shape_kinds() const { return stored().ground_shapes; }
 
 std::vector<ContactDecision> System::contact_decisions() const {
   std::vector<ContactDecision> all;
-  for (const auto& [pair, allowed] : notes().contact_decisions)
+  for (const auto& [pair, allowed] : stored().contact_decisions)
     all.push_back({{pair.first, token_}, {pair.second, token_}, allowed});
   return all;
 }
@@ -60,11 +61,11 @@ std::vector<Identity> System::identities(const Registry<K>& registry) const {
   return all;
 }
 
-std::vector<BodyId> System::bodies() const { return identities<BodyId>(bodies_); }
-std::vector<ElementId> System::elements() const { return identities<ElementId>(forces_); }
-std::vector<JointId> System::joints() const { return identities<JointId>(joints_); }
-std::vector<ShapeId> System::shapes() const { return identities<ShapeId>(shapes_); }
-std::vector<ObstacleId> System::obstacles() const { return identities<ObstacleId>(ground_shapes_); }
+std::vector<BodyId> System::bodies() const { return identities<BodyId>(stored().bodies); }
+std::vector<ElementId> System::elements() const { return identities<ElementId>(stored().forces); }
+std::vector<JointId> System::joints() const { return identities<JointId>(stored().joints); }
+std::vector<ShapeId> System::shapes() const { return identities<ShapeId>(stored().shapes); }
+std::vector<ObstacleId> System::obstacles() const { return identities<ObstacleId>(stored().ground_shapes); }
 
 template <class Identity, class K>
 std::string System::name_in(Role role, const Registry<K>& registry, Identity id) const {
@@ -72,35 +73,35 @@ std::string System::name_in(Role role, const Registry<K>& registry, Identity id)
   if (id.token != token_) return "part of another system";
   const K* const kind = registry.kind_ever(id.serial);
   if (kind == nullptr) return "part that was never given";
-  const auto names = notes().names.find(role);
+  const auto names = stored().names.find(role);
   std::string given;
-  if (names != notes().names.end()) {
+  if (names != stored().names.end()) {
     if (const auto found = names->second.find(id.serial); found != names->second.end()) given = found->second;
   }
   return describe(kind->label(), given, id.serial);
 }
 
 std::string System::name(BodyId id) const {
-  return id == ground ? "ground" : name_in(Role::body, bodies_, id);
+  return id == ground ? "ground" : name_in(Role::body, stored().bodies, id);
 }
-std::string System::name(ElementId id) const { return name_in(Role::force, forces_, id); }
-std::string System::name(JointId id) const { return name_in(Role::joint, joints_, id); }
-std::string System::name(ShapeId id) const { return name_in(Role::shape, shapes_, id); }
-std::string System::name(ObstacleId id) const { return name_in(Role::obstacle, ground_shapes_, id); }
+std::string System::name(ElementId id) const { return name_in(Role::force, stored().forces, id); }
+std::string System::name(JointId id) const { return name_in(Role::joint, stored().joints, id); }
+std::string System::name(ShapeId id) const { return name_in(Role::shape, stored().shapes, id); }
+std::string System::name(ObstacleId id) const { return name_in(Role::obstacle, stored().ground_shapes, id); }
 
 std::string System::given_name(BodyId id) const {
   if (id == ground) return {};
-  if (id.token != token_ || bodies_.kind_ever(id.serial) == nullptr) {
+  if (id.token != token_ || stored().bodies.kind_ever(id.serial) == nullptr) {
     PartCheck("name of a body", *this).body(id, "body", false);
   }
-  const auto names = notes().names.find(Role::body);
-  if (names == notes().names.end()) return {};
+  const auto names = stored().names.find(Role::body);
+  if (names == stored().names.end()) return {};
   const auto found = names->second.find(id.serial);
   return found == names->second.end() ? std::string{} : found->second;
 }
 
 Index System::by_name(Role role, std::string_view name, std::string_view what) const {
-  if (const auto names = notes().serials_by_name.find(role); names != notes().serials_by_name.end()) {
+  if (const auto names = stored().serials_by_name.find(role); names != stored().serials_by_name.end()) {
     if (const auto found = names->second.find(name); found != names->second.end()) return found->second;
   }
   throw ModelError(std::string(what) + " '" + std::string(name) +
@@ -119,25 +120,28 @@ ObstacleId System::obstacle(std::string_view name) const {
 
 bool System::has_orientation(BodyId id) const {
   PartCheck("orientation of a body", *this).body(id, "body", true);
-  return id != ground && bodies_.kind_of(id.serial).has_orientation();
+  return id != ground && stored().bodies.kind_of(id.serial).has_orientation();
 }
 
-bool System::contains(BodyId id) const { return id.token == token_ && bodies_.contains(id.serial); }
-bool System::contains(ElementId id) const { return id.token == token_ && forces_.contains(id.serial); }
-bool System::contains(JointId id) const { return id.token == token_ && joints_.contains(id.serial); }
-bool System::contains(ShapeId id) const { return id.token == token_ && shapes_.contains(id.serial); }
+bool System::contains(BodyId id) const { return id.token == token_ && stored().bodies.contains(id.serial); }
+bool System::contains(ElementId id) const {
+  return id.token == token_ && stored().forces.contains(id.serial);
+}
+bool System::contains(JointId id) const { return id.token == token_ && stored().joints.contains(id.serial); }
+bool System::contains(ShapeId id) const { return id.token == token_ && stored().shapes.contains(id.serial); }
 bool System::contains(ObstacleId id) const {
-  return id.token == token_ && ground_shapes_.contains(id.serial);
+  return id.token == token_ && stored().ground_shapes.contains(id.serial);
 }
 bool System::contains(MaterialId id) const {
-  return id.token == token_ && id.serial < notes().surfaces.size();
+  return id.token == token_ && id.serial < stored().surfaces.size();
 }
 
 BodyId System::body_of(ShapeId shape) const {
   if (shape.token == token_) {
-    if (const auto place = shapes_.place(shape.serial); place.slot != none)
-      return shapes_.entries()[place.entry].kind->body(place.slot);
-    if (const auto found = notes().former_carriers.find(shape.serial); found != notes().former_carriers.end())
+    if (const auto place = stored().shapes.place(shape.serial); place.slot != none)
+      return stored().shapes.entries()[place.entry].kind->body(place.slot);
+    if (const auto found = stored().former_carriers.find(shape.serial);
+        found != stored().former_carriers.end())
       return found->second;
   }
   throw ModelError("body of a shape: shape is " + name(shape) + "; allowed: a shape of this system");
@@ -152,15 +156,15 @@ void System::remove_from(Role role, Registry<K>& registry, Identity id, std::str
   }
   registry.remove(id.serial);
   // The part keeps its name in messages; another one may take it.
-  if (const auto found = notes().names[role].find(id.serial); found != notes().names[role].end()) {
-    notes().serials_by_name[role].erase(found->second);
+  if (const auto found = stored().names[role].find(id.serial); found != stored().names[role].end()) {
+    stored().serials_by_name[role].erase(found->second);
   }
 }
 
 void System::remove(BodyId id) {
   if (id == ground) throw ModelError("ground: cannot be removed; allowed: a body of this system");
   std::vector<BodyId> ends;
-  for (const auto& entry : forces_.entries()) {
+  for (const auto& entry : stored().forces.entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
       ends.clear();
       entry.kind->ends(slot, ends);
@@ -169,7 +173,7 @@ void System::remove(BodyId id) {
                        " acts on it; allowed: a body without force elements");
     }
   }
-  for (const auto& entry : joints_.entries()) {
+  for (const auto& entry : stored().joints.entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
       ends.clear();
       entry.kind->ends(slot, ends);
@@ -178,60 +182,60 @@ void System::remove(BodyId id) {
                        " binds it; allowed: a body without joints");
     }
   }
-  for (const auto& entry : shapes_.entries()) {
+  for (const auto& entry : stored().shapes.entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
       if (entry.kind->body(slot) != id) continue;
       throw ModelError(name(id) + ": cannot be removed, " + name(ShapeId{entry.serials[slot], token_}) +
                        " is fixed to it; allowed: a body without shapes");
     }
   }
-  remove_from(Role::body, bodies_, id, "body");
-  notes().kept.erase(id.serial);
-  std::erase_if(notes().contact_decisions, [&](const auto& decision) {
+  remove_from(Role::body, stored().bodies, id, "body");
+  stored().kept.erase(id.serial);
+  std::erase_if(stored().contact_decisions, [&](const auto& decision) {
     return decision.first.first == id.serial || decision.first.second == id.serial;
   });
 }
-void System::remove(ElementId id) { remove_from(Role::force, forces_, id, "element"); }
+void System::remove(ElementId id) { remove_from(Role::force, stored().forces, id, "element"); }
 void System::remove(JointId id) {
   const auto refuse = [&](const std::string& by) {
     throw ModelError(name(id) + ": cannot be removed, " + by +
                      " acts on its coordinate; allowed: a joint without drivers, motors and stops");
   };
-  for (const auto& entry : forces_.entries()) {
+  for (const auto& entry : stored().forces.entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
       if (id.valid() && entry.kind->on_joint(slot) == id)
         refuse(name(ElementId{entry.serials[slot], token_}));
     }
   }
-  for (const auto& entry : joints_.entries()) {
+  for (const auto& entry : stored().joints.entries()) {
     for (Index slot = 0; slot < entry.serials.size(); ++slot) {
       if (id.valid() && entry.kind->on_joint(slot) == id) refuse(name(JointId{entry.serials[slot], token_}));
     }
   }
-  remove_from(Role::joint, joints_, id, "joint");
+  remove_from(Role::joint, stored().joints, id, "joint");
 }
 void System::remove(ShapeId id) {
   const BodyId carrier = contains(id) ? body_of(id) : BodyId{};
-  remove_from(Role::shape, shapes_, id, "shape");
-  notes().former_carriers.emplace(id.serial, carrier);
+  remove_from(Role::shape, stored().shapes, id, "shape");
+  stored().former_carriers.emplace(id.serial, carrier);
 }
 void System::remove(ObstacleId id) {
-  remove_from(Role::obstacle, ground_shapes_, id, "obstacle");
-  notes().surfaces.remove_own(id.serial);
+  remove_from(Role::obstacle, stored().ground_shapes, id, "obstacle");
+  stored().surfaces.remove_own(id.serial);
 }
 
 void System::keep_place(BodyId body, bool keep) {
   PartCheck("place to keep", *this).body(body, "body", false);
   if (keep) {
-    notes().kept.insert(body.serial);
+    stored().kept.insert(body.serial);
   } else {
-    notes().kept.erase(body.serial);
+    stored().kept.erase(body.serial);
   }
 }
 
 bool System::keeps_place(BodyId body) const {
   PartCheck("place to keep", *this).body(body, "body", false);
-  return notes().kept.contains(body.serial);
+  return stored().kept.contains(body.serial);
 }
 
 std::pair<Index, Index> System::two_bodies(BodyId a, BodyId b) const {
@@ -244,40 +248,40 @@ std::pair<Index, Index> System::two_bodies(BodyId a, BodyId b) const {
 void System::allow_contact(BodyId a, BodyId b, std::optional<bool> allowed) {
   const std::pair<Index, Index> pair = two_bodies(a, b);
   if (allowed) {
-    notes().contact_decisions.insert_or_assign(pair, *allowed);
+    stored().contact_decisions.insert_or_assign(pair, *allowed);
   } else {
-    notes().contact_decisions.erase(pair);
+    stored().contact_decisions.erase(pair);
   }
 }
 
 std::optional<bool> System::is_contact_allowed(BodyId a, BodyId b) const {
-  const auto found = notes().contact_decisions.find(two_bodies(a, b));
-  return found == notes().contact_decisions.end() ? std::nullopt : std::optional(found->second);
+  const auto found = stored().contact_decisions.find(two_bodies(a, b));
+  return found == stored().contact_decisions.end() ? std::nullopt : std::optional(found->second);
 }
 
 MaterialId System::material(std::string_view name) {
   if (name.empty()) throw ModelError("material: name is empty; allowed: a name");
-  return {notes().surfaces.material(name), token_};
+  return {stored().surfaces.material(name), token_};
 }
 
 void System::between(MaterialId a, MaterialId b, const Surface& surface) {
   for (const MaterialId id : {a, b}) {
     if (!contains(id)) throw ModelError("surface: material is unknown; allowed: a material of this system");
   }
-  PartCheck("surface between '" + notes().surfaces.name(a.serial) + "' and '" +
-                notes().surfaces.name(b.serial) + "'",
+  PartCheck("surface between '" + stored().surfaces.name(a.serial) + "' and '" +
+                stored().surfaces.name(b.serial) + "'",
             *this)
       .surface(surface);
-  notes().surfaces.set(a.serial, b.serial, surface);
+  stored().surfaces.set(a.serial, b.serial, surface);
 }
 
 void System::set_default_law(const Surface& surface) {
   PartCheck("default law of contact", *this).surface(surface);
-  notes().surfaces.set_default(surface);
+  stored().surfaces.set_default(surface);
 }
 
 std::optional<Surface> System::find_law(const ContactSide& a, const ContactSide& b) const {
-  const Surface* const found = notes().surfaces.find(a, b);
+  const Surface* const found = stored().surfaces.find(a, b);
   return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
@@ -291,8 +295,8 @@ std::optional<Surface> System::law(MaterialId a, ObstacleId obstacle) const {
     throw ModelError("law of contact: obstacle is " + refused_name(*this, obstacle) +
                      "; allowed: one of this system");
   PartCheck("law of contact", *this).material(a);
-  const auto place = ground_shapes_.place(obstacle.serial);
-  const MaterialId b = ground_shapes_.entries()[place.entry].kind->material(place.slot);
+  const auto place = stored().ground_shapes.place(obstacle.serial);
+  const MaterialId b = stored().ground_shapes.entries()[place.entry].kind->material(place.slot);
   return find_law({.material = a.serial}, {.material = b.serial, .own = obstacle.serial});
 }
 
@@ -322,14 +326,14 @@ std::uint64_t System::fingerprint() const {
     }
   };
   const auto nothing_more = [](const auto&) {};
-  add_kinds(bodies_, add_filters);
-  add_kinds(forces_, nothing_more);
-  add_kinds(joints_, nothing_more);
-  add_kinds(shapes_, add_filters);
-  add_kinds(ground_shapes_, add_filters);
-  notes().surfaces.fingerprint(print);
-  if (!notes().contact_decisions.empty()) print.add("contacts of two bodies");
-  for (const auto& [pair, allowed] : notes().contact_decisions) {
+  add_kinds(stored().bodies, add_filters);
+  add_kinds(stored().forces, nothing_more);
+  add_kinds(stored().joints, nothing_more);
+  add_kinds(stored().shapes, add_filters);
+  add_kinds(stored().ground_shapes, add_filters);
+  stored().surfaces.fingerprint(print);
+  if (!stored().contact_decisions.empty()) print.add("contacts of two bodies");
+  for (const auto& [pair, allowed] : stored().contact_decisions) {
     for (const Index number : {pair.first, pair.second, Index{allowed}}) print.add(std::uint64_t{number});
   }
   return print.value();

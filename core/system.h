@@ -8,11 +8,10 @@
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 #include <carom/core/model_finding.h>
+#include <carom/core/owner.h>
 #include <carom/core/part.h>
-#include <carom/core/registry.h>
 #include <carom/core/surface.h>
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +21,8 @@
 namespace carom {
 
 struct ContactSide;
+template <class K>
+class Registry;
 
 /// Whether shapes of two bodies may touch, as decided (System::allow_contact()).
 struct ContactDecision {
@@ -47,8 +48,7 @@ public:
   /// Throws ModelError (naming the part, the value and what is allowed) if the part is invalid.
   template <Part P>
   IdOf<P> add(const P& part, std::string name = {}) {
-    auto& registry = registry_of<P::role>();
-    return {add_to(registry, P::role, type_of_part<P>(), &part, std::move(name)), token_};
+    return {add_to(P::role, type_of_part<P>(), &part, std::move(name)), token_};
   }
 
   /// Adds a shape on ground with its contact law. Short for a material of its own that has this law with
@@ -152,40 +152,26 @@ public:
   /// positions and velocities, functions given by users, and data that a user's element does not report.
   [[nodiscard]] std::uint64_t fingerprint() const;
 
-  /// Parts by kind, for assembly.
-  [[nodiscard]] const Registry<BodyKind>& body_kinds() const { return bodies_; }
-  [[nodiscard]] const Registry<ForceKind>& force_kinds() const { return forces_; }
-  [[nodiscard]] const Registry<JointKind>& joint_kinds() const { return joints_; }
-  [[nodiscard]] const Registry<ShapeKind>& shape_kinds() const { return shapes_; }
-  [[nodiscard]] const Registry<GroundShapeKind>& ground_shape_kinds() const { return ground_shapes_; }
+  /// Parts by kind, for assembly (core/registry.h).
+  [[nodiscard]] const Registry<BodyKind>& body_kinds() const;
+  [[nodiscard]] const Registry<ForceKind>& force_kinds() const;
+  [[nodiscard]] const Registry<JointKind>& joint_kinds() const;
+  [[nodiscard]] const Registry<ShapeKind>& shape_kinds() const;
+  [[nodiscard]] const Registry<GroundShapeKind>& ground_shape_kinds() const;
 
 private:
-  template <Role R>
-  auto& registry_of() {
-    if constexpr (R == Role::body) {
-      return bodies_;
-    } else if constexpr (R == Role::force) {
-      return forces_;
-    } else if constexpr (R == Role::joint) {
-      return joints_;
-    } else if constexpr (R == Role::shape) {
-      return shapes_;
-    } else {
-      return ground_shapes_;
-    }
-  }
   template <class K>
-  Index add_to(Registry<K>& registry, Role role, const PartType<K>& type, const void* part, std::string name);
+  Index add_to(Role role, const PartType<K>& type, const void* part, std::string name);
   void set_own_law(ObstacleId id, const Surface& surface);
   void check_surface(const Surface& surface, std::string_view label, const std::string& name) const;
   template <class Identity, class K>
   [[nodiscard]] std::vector<Identity> identities(const Registry<K>& registry) const;
 
-  // Names, laws and decisions: what is written beside the parts.
-  struct Notes;
+  // Parts by kind, and what is written beside them: names, laws and decisions.
+  struct Stored;
 
-  [[nodiscard]] const Notes& notes() const;
-  [[nodiscard]] Notes& notes();
+  [[nodiscard]] const Stored& stored() const;
+  [[nodiscard]] Stored& stored();
   void take_dimension(int dimension, std::string_view label) const;
   void check_name(Role role, const std::string& name, std::string_view label) const;
   [[nodiscard]] static std::string describe(std::string_view label, const std::string& name, Index serial);
@@ -200,12 +186,7 @@ private:
 
   Index token_;
   int dimension_ = 0;
-  Registry<BodyKind> bodies_;
-  Registry<ForceKind> forces_;
-  Registry<JointKind> joints_;
-  Registry<ShapeKind> shapes_;
-  Registry<GroundShapeKind> ground_shapes_;
-  std::unique_ptr<Notes> notes_;  // null: none; ask notes()
+  Owner<Stored> stored_;  // null: no part, nothing written; ask stored()
 };
 
 }  // namespace carom

@@ -2,7 +2,7 @@
 
 #include <carom/core/enum_name.h>
 #include <carom/core/listed.h>
-#include <carom/core/system_notes.h>
+#include <carom/core/stored_parts.h>
 
 #include <algorithm>
 #include <array>
@@ -291,11 +291,12 @@ std::vector<ModelFinding> System::check() const {
   const auto is_solid = [&](MaterialId material) {
     return std::find(solid.begin(), solid.end(), material) != solid.end();
   };
-  for (const auto& [pair, law] : notes().surfaces.pairs()) {
+  for (const auto& [pair, law] : stored().surfaces.pairs()) {
     const MaterialId a{pair.first, token_}, b{pair.second, token_};
     if ((is_solid(a) && has(touching, b)) || (is_solid(b) && has(touching, a))) continue;
     if (touch(touching, a, b)) continue;
-    const std::string &given_a = notes().surfaces.name(a.serial), &given_b = notes().surfaces.name(b.serial);
+    const std::string &given_a = stored().surfaces.name(a.serial),
+                      &given_b = stored().surfaces.name(b.serial);
     const std::string name_a = "'" + given_a + "'", name_b = "'" + given_b + "'";
     std::string text = "surface between " + name_a + " and " + name_b + ": ";
     if (!is_solid(a) && !is_solid(b)) {
@@ -308,7 +309,7 @@ std::vector<ModelFinding> System::check() const {
     }
     found.push_back({FindingKind::law_without_effect, {given_a, given_b}, text});
   }
-  find_pairs_without_law(*this, notes().surfaces, touching, found);
+  find_pairs_without_law(*this, stored().surfaces, touching, found);
   if (solid.empty()) {
     if (!touching.intended.empty() && !any_touch(*this, touching)) {
       std::string text = listed(touching.intended) +
@@ -316,7 +317,7 @@ std::vector<ModelFinding> System::check() const {
       found.push_back({FindingKind::touches_nothing, touching.intended, std::move(text)});
     }
   } else {
-    find_contacts_without_law(*this, notes().surfaces, touching, found);
+    find_contacts_without_law(*this, stored().surfaces, touching, found);
     find_hidden(*this, touching, found);
     if (!touching.any) {
       PartNames untouched;
@@ -326,11 +327,11 @@ std::vector<ModelFinding> System::check() const {
     }
     find_bodies_without_shape(*this, found);
   }
-  if (!notes().kept.empty()) {
-    std::vector<char> bound(bodies_.next_serial(), 0);
-    mark_ends(joints_, bound);
+  if (!stored().kept.empty()) {
+    std::vector<char> bound(stored().bodies.next_serial(), 0);
+    mark_ends(stored().joints, bound);
     PartNames kept;
-    for (const Index serial : notes().kept) {
+    for (const Index serial : stored().kept) {
       if (bound[serial] == 0) kept.push_back(name(BodyId{serial, token_}));
     }
     if (!kept.empty()) {

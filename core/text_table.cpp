@@ -15,26 +15,27 @@ std::string cell(double value, int digits) {
   return {buffer.data(), result.ptr};
 }
 
-TextTable::TextTable(std::vector<std::string> headings) : rows_{std::move(headings)} {}
+TextTable::TextTable(std::vector<std::string> headings)
+    : columns_(headings.size()), cells_(std::move(headings)) {}
 
 void TextTable::add(std::vector<std::string> cells) {
-  assert(cells.size() == rows_.front().size());
-  rows_.push_back(std::move(cells));
+  assert(cells.size() == columns_);
+  for (std::string& cell : cells) cells_.push_back(std::move(cell));
 }
 
 std::string TextTable::text() const {
-  std::vector<std::size_t> widths(rows_.front().size(), 0);
-  for (const auto& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::vector<std::size_t> widths(columns_, 0);
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    std::size_t& width = widths[i % columns_];
+    width = std::max(width, cells_[i].size());
   }
   std::string text;
-  for (const auto& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - row[i].size(), ' ');
-      text += "  ";
-      text += i == 0 ? row[i] + padding : padding + row[i];
-    }
-    text += '\n';
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const std::size_t column = i % columns_;
+    const std::string padding(widths[column] - cells_[i].size(), ' ');
+    text += "  ";
+    text += column == 0 ? cells_[i] + padding : padding + cells_[i];
+    if (column + 1 == columns_) text += '\n';
   }
   return text;
 }

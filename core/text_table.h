@@ -5,6 +5,7 @@
 
 #include <carom/core/export.h>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,13 @@ public:
   /// Appends a row of as many cells as there are headings.
   void add(std::vector<std::string> cells);
   /// True if it has no row but the headings.
-  [[nodiscard]] bool empty() const { return rows_.size() == 1; }
+  [[nodiscard]] bool empty() const { return cells_.size() == columns_; }
   /// The table, each line indented by two spaces and ended.
   [[nodiscard]] std::string text() const;
 
 private:
-  std::vector<std::vector<std::string>> rows_;
+  std::size_t columns_;
+  std::vector<std::string> cells_;  // row by row, the headings first
 };
 
 }  // namespace carom

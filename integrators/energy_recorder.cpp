@@ -95,6 +95,7 @@ void check(const EnergyRecorder::Options& options) {
 
 struct EnergyRecorder::Impl {
   RowMaker rows;
+  bool by_interval = false;
   long steps = 0;
 };
 
@@ -105,8 +106,9 @@ EnergyRecorder::EnergyRecorder(Simulation& simulation, const Options& options)
   check(options);
   impl_->rows.add_row(simulation);
   // Observers come before actions: an interval's row finds the events of the step that led to it.
-  const int every = options.interval > 0.0 ? 0 : std::max(options.every_steps, 1);
-  if (options.interval > 0.0) {
+  impl_->by_interval = options.interval > 0.0;
+  const int every = impl_->by_interval ? 0 : std::max(options.every_steps, 1);
+  if (impl_->by_interval) {
     action_ =
         simulation.every(options.interval, [impl = impl_](Simulation& run) { impl->rows.add_row(run); });
   }
@@ -118,7 +120,7 @@ EnergyRecorder::EnergyRecorder(Simulation& simulation, const Options& options)
 
 void EnergyRecorder::detach(Simulation& simulation) {
   simulation.remove_callback(observer_);
-  if (action_) simulation.remove_callback(*action_);
+  if (impl_->by_interval) simulation.remove_callback(action_);
 }
 
 const EnergyTrace& EnergyRecorder::trace() const { return impl_->rows.trace(); }

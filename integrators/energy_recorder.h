@@ -8,7 +8,6 @@
 #include <carom/integrators/callback_id.h>
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace carom {
@@ -44,7 +43,7 @@ private:
   struct Impl;
   std::shared_ptr<Impl> impl_;
   CallbackId observer_;
-  std::optional<CallbackId> action_;  // of an interval
+  CallbackId action_;  // of an interval, else of no function
 };
 
 /// Runs to each of the listed times in turn, steps ending exactly there, and records a row at the present and

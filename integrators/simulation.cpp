@@ -91,8 +91,7 @@ void Simulation::Impl::write_to_log(std::int64_t told) {
   write_event_news(log, records.last(fresh), detector);
 }
 
-Simulation::Simulation(System system, Mode mode)
-    : impl_(std::make_unique<Impl>(std::move(system), std::move(mode))) {}
+Simulation::Simulation(System system, Mode mode) : impl_(new Impl(std::move(system), std::move(mode))) {}
 Simulation::Simulation(System system, const TimeStepping& mode) : Simulation(std::move(system), Mode(mode)) {}
 Simulation::Simulation(System system, const EventDriven& mode) : Simulation(std::move(system), Mode(mode)) {}
 Simulation::~Simulation() = default;

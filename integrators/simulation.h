@@ -7,6 +7,7 @@
 #include <carom/core/energy_ledger.h>
 #include <carom/core/export.h>
 #include <carom/core/log.h>
+#include <carom/core/owner.h>
 #include <carom/core/state.h>
 #include <carom/core/system.h>
 #include <carom/integrators/callback_id.h>
@@ -17,7 +18,6 @@
 #include <carom/integrators/run/time_stepping.h>
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -149,7 +149,7 @@ public:
 
 private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Owner<Impl> impl_;
 };
 
 }  // namespace carom

@@ -6,13 +6,17 @@
 #include <cmath>
 #include <string>
 
-namespace carom::planar {
+namespace carom::generic {
 
 namespace {
 
+using planar::check_angular_ends;
+using planar::MeanAngle;
+using planar::RelativeAngle;
+
 // d and its rate.
 struct Placement {
-  Placement(const Bushing& part, const ElementView<2>& at) {
+  Placement(const Bushing<2>& part, const ElementView<2>& at) {
     if (part.from.body != ground) {
       const double* r = at.context().evaluation.rotation.data() + at.oriented(part.from.body).rotation;
       cosine = r[0];
@@ -40,7 +44,7 @@ struct Placement {
   Vec<3> deflection, rate;
 };
 
-void book(const Bushing& part, const Placement& at, const Vec<3>& elastic, const Vec<3>& viscous,
+void book(const Bushing<2>& part, const Placement& at, const Vec<3>& elastic, const Vec<3>& viscous,
           ElementLoads<2>& out) {
   const auto split = [&](const Vec<3>& load, auto&& force_at, auto&& torque_on) {
     const Vec<2> force = at.to_fixed(load.head<2>());
@@ -61,7 +65,7 @@ void book(const Bushing& part, const Placement& at, const Vec<3>& elastic, const
 // of `from` to the point of `to`, r the lever of that point and J the turn by a right angle,
 //     dd = R^T (dx_to - dx_from + J r dangle_to - J u dangle_from),   d(R^T) = -R^T J dangle_from.
 struct Tangent : Placement {
-  Tangent(const Bushing& part, const ElementView<2>& at) : Placement(part, at) {
+  Tangent(const Bushing<2>& part, const ElementView<2>& at) : Placement(part, at) {
     u = distance + at.attach(part.from).lever(at.context().evaluation);
     r = at.attach(part.to).lever(at.context().evaluation);
     const auto motion = [&](BodyId body, int i) {
@@ -159,7 +163,8 @@ void check_matrix(const PartCheck& check, const Mat<3>& matrix, const std::strin
 
 }  // namespace
 
-void Bushing::check(const PartCheck& check) const {
+template <>
+void Bushing<2>::check(const PartCheck& check) const {
   check_end(check, from, "from");
   check_end(check, to, "to");
   check_angular_ends(check, from.body, to.body);
@@ -170,12 +175,14 @@ void Bushing::check(const PartCheck& check) const {
   }
 }
 
-void Bushing::loads(const ElementView<2>& at, ElementLoads<2>& out) const {
+template <>
+void Bushing<2>::loads(const ElementView<2>& at, ElementLoads<2>& out) const {
   const Placement now(*this, at);
   book(*this, now, symmetric(stiffness) * now.deflection, symmetric(damping) * now.rate, out);
 }
 
-void Bushing::mean_loads(const ElementStep<2>& step, ElementLoads<2>& out) const {
+template <>
+void Bushing<2>::mean_loads(const ElementStep<2>& step, ElementLoads<2>& out) const {
   const Placement before(*this, step.start);
   const Placement after(*this, step.end);
   Placement mean = before;
@@ -192,7 +199,8 @@ void Bushing::mean_loads(const ElementStep<2>& step, ElementLoads<2>& out) const
   book(*this, mean, elastic, viscous, out);
 }
 
-void Bushing::derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
+template <>
+void Bushing<2>::derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) const {
   const Tangent now(*this, at);
   const Mat<3> k = symmetric(stiffness), c = symmetric(damping);
   const Mat<3, 6> b = now.of_deflection(), b_rate = now.of_rate();
@@ -209,12 +217,14 @@ void Bushing::derivatives(const ElementView<2>& at, ElementDerivatives<2>& out) 
   }
 }
 
-double Bushing::potential(const ElementView<2>& at) const {
+template <>
+double Bushing<2>::potential(const ElementView<2>& at) const {
   const Vec<3> d = Placement(*this, at).deflection;
   return 0.5 * d.dot(symmetric(stiffness) * d);
 }
 
-void Bushing::fingerprint(Fingerprint& print) const {
+template <>
+void Bushing<2>::fingerprint(Fingerprint& print) const {
   add_to(print, from);
   add_to(print, to);
   print.add({stiffness.data(), 9});
@@ -222,8 +232,9 @@ void Bushing::fingerprint(Fingerprint& print) const {
   print.add({rest.data(), 3});
 }
 
-PartType<ForceKind> Bushing::part_type() {
-  return PartType<ForceKind>::of<ForceElementKind<Bushing>, Bushing>();
+template <>
+PartType<ForceKind> Bushing<2>::part_type() {
+  return PartType<ForceKind>::of<ForceElementKind<Bushing<2>>, Bushing<2>>();
 }
 
-}  // namespace carom::planar
+}  // namespace carom::generic

@@ -1,7 +1,7 @@
 // Problem: the rows of pins, which are most of a chain, at the cost of their arithmetic.
 
 #include <carom/core/numerics/pair.h>
-#include <carom/joints/constraint_part.h>
+#include <carom/joints/constraint_part_table.h>
 
 #include <algorithm>
 #include <array>

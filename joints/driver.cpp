@@ -1,4 +1,5 @@
 #include <carom/core/system.h>
+#include <carom/core/time_course.h>
 #include <carom/joints/driver_kind.h>
 
 #include <cmath>

@@ -7,7 +7,6 @@
 #include <carom/core/force_kind.h>
 #include <carom/core/joint_kind.h>
 #include <carom/core/part.h>
-#include <carom/core/time_course.h>
 #include <carom/joints/actuator.h>
 
 #include <functional>

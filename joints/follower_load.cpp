@@ -11,6 +11,8 @@ Vec<2> turned_force(const FollowerLoad& load, const ElementView<2>& at) {
 
 }  // namespace
 
+std::vector<BodyId> FollowerLoad::bodies() const { return {on.body}; }
+
 void FollowerLoad::check(const PartCheck& check) const {
   check.oriented_body(on.body, "on");
   check_end(check, on, "on");

@@ -24,7 +24,7 @@ struct CAROM_API FollowerLoad {
   std::vector<double> breaks{};  ///< when the function of time jumps or has a kink, ascending [s]
 
   /// The body that it acts on.
-  [[nodiscard]] std::vector<BodyId> bodies() const { return {on.body}; }
+  [[nodiscard]] std::vector<BodyId> bodies() const;
   /// Throws ModelError for an invalid end or function.
   void check(const PartCheck& check) const;
   /// Books the load.

@@ -12,6 +12,7 @@
 
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
+#include <carom/core/owner.h>
 #include <carom/core/part.h>
 #include <carom/joints/constraint_part.h>
 #include <carom/joints/joint_ends.h>
@@ -22,6 +23,8 @@
 #include <vector>
 
 namespace carom::planar {
+
+class ConstraintPartTable;
 
 /// Joints that are sums of constraint parts, whatever their kind: all that does not depend on its type.
 class CAROM_API CompositeJoints : public JointKind {
@@ -63,7 +66,7 @@ private:
   std::string_view label_;
   Index row_count_;
   bool with_coordinate_;
-  ConstraintPartTable table_;  // the coordinate behind the rows
+  Owner<ConstraintPartTable> table_;  // the coordinate behind the rows
 };
 
 /// All joints of one kind that is a sum of constraint parts.

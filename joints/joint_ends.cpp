@@ -1,4 +1,5 @@
 #include <carom/core/body_kind.h>
+#include <carom/core/registry.h>
 #include <carom/core/vector_length.h>
 #include <carom/joints/joint_ends.h>
 

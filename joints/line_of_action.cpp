@@ -1,3 +1,4 @@
+#include <carom/core/registry.h>
 #include <carom/joints/line_of_action.h>
 
 namespace carom {

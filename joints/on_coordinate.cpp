@@ -1,3 +1,4 @@
+#include <carom/core/registry.h>
 #include <carom/core/system.h>
 #include <carom/joints/on_coordinate.h>
 #include <carom/joints/revolute.h>

@@ -3,7 +3,6 @@
 /// \file
 /// Linear spring with a dashpot in parallel.
 
-#include <carom/core/column.h>
 #include <carom/core/end.h>
 #include <carom/core/force_kind.h>
 #include <carom/core/numerics/pair.h>

@@ -40,7 +40,7 @@ void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& stat
     if constexpr (Space<D>::has_orientation) {
       if (body.rotation != none) {
         const Vec<D> lever = at.arm - at.feature.radius * normal;
-        Eigen::Map<Vec<Space<D>::spin_size>>(out.row(row) + D) = Space<D>::spin_row(direction, lever);
+        Space<D>::spin_row(direction, lever, out.row(row) + D);
         out.drift[static_cast<std::size_t>(row)] =
             direction.dot(Space<D>::centripetal(state.v + body.v + D, at.arm));
       }

@@ -33,6 +33,10 @@ void add_pieces(Fingerprint& print, const std::vector<GroundPiece>& pieces) {
   }
 }
 
+void append_breaks(const planar::PrescribedMotion& motion, std::vector<double>& out) {
+  out.insert(out.end(), motion.breaks.begin(), motion.breaks.end());
+}
+
 void add_motion(Fingerprint& print, const Vec<2>& pivot, double surface_speed, MaterialId material,
                 const planar::PrescribedMotion& motion) {
   print.add({pivot.data(), 2});

@@ -23,6 +23,8 @@ namespace carom::generic {
 /// Demands finite numbers and a motion that can be.
 CAROM_API void check_motion(const PartCheck& check, const Vec<2>& pivot, double surface_speed,
                             const planar::PrescribedMotion& motion);
+/// Appends the times at which a motion has kinks [s].
+CAROM_API void append_breaks(const planar::PrescribedMotion& motion, std::vector<double>& out);
 /// Adds the pieces of a shape.
 CAROM_API void add_pieces(Fingerprint& print, const std::vector<GroundPiece>& pieces);
 /// Adds how a shape moves, and of what it is. Functions cannot be hashed; that there is a motion, and its
@@ -60,7 +62,7 @@ public:
     return parts_[slot].part.motion.at(time, parts_[slot].part.pivot);
   }
   void discontinuity_times(Index slot, std::vector<double>& out) const override {
-    for (const double time : parts_[slot].part.motion.breaks) out.push_back(time);
+    append_breaks(parts_[slot].part.motion, out);
   }
   void pieces(Index slot, std::vector<GroundPiece>& out) const override {
     out.insert(out.end(), parts_[slot].pieces.begin(), parts_[slot].pieces.end());

@@ -4,6 +4,7 @@
 #include <carom/contact/detection/gap_convex.h>
 #include <carom/contact/detection/gap_inside_circle.h>
 #include <carom/contact/detection/ground_pieces.h>
+#include <carom/core/registry.h>
 #include <carom/core/system.h>
 
 #include <algorithm>

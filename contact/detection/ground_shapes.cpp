@@ -2,6 +2,7 @@
 #include <carom/contact/detection/prescribed_motion.h>
 #include <carom/core/described_sets.h>
 #include <carom/core/law_jump.h>
+#include <carom/core/registry.h>
 #include <carom/core/system.h>
 
 #include <algorithm>

@@ -45,10 +45,10 @@ void write_row_of_two(const RowSide& a, const RowSide& b, const Vec<2>& directio
                       double* row) {
   row[0] = direction[0];
   row[1] = direction[1];
-  row[2] = Space<2>::spin_row(direction, Vec<2>(point - a.centre))[0];
+  Space<2>::spin_row(direction, Vec<2>(point - a.centre), row + 2);
   row[3] = -direction[0];
   row[4] = -direction[1];
-  row[5] = -Space<2>::spin_row(direction, Vec<2>(point - b.centre))[0];
+  Space<2>::spin_row(direction, Vec<2>(b.centre - point), row + 5);
 }
 
 /// Writes a side's columns of a row; returns where the next ones begin.
@@ -57,7 +57,7 @@ double* write_columns(const RowSide& side, double sign, const Vec<2>& direction,
   if (side.columns == 0) return row;
   row[0] = sign * direction[0];
   row[1] = sign * direction[1];
-  if (side.columns > 2) row[2] = sign * Space<2>::spin_row(direction, Vec<2>(point - side.centre))[0];
+  if (side.columns > 2) Space<2>::spin_row(direction, Vec<2>(sign * (point - side.centre)), row + 2);
   return row + side.columns;
 }
 

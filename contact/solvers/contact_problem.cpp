@@ -56,6 +56,15 @@ bool is_planar_contact(std::span<const RowSet> sets, int row) {
 
 }  // namespace
 
+// Spans are made here: in the header each kind of them would be compiled anew by every program.
+std::span<const double> ContactProblem::matrix() const { return w_; }
+std::span<double> ContactProblem::matrix() { return w_; }
+std::span<const double> ContactProblem::vector() const { return b_; }
+std::span<double> ContactProblem::vector() { return b_; }
+std::span<const RowSet> ContactProblem::sets() const { return sets_; }
+std::span<RowSet> ContactProblem::sets() { return sets_; }
+std::span<const RowGroup> ContactProblem::groups() const { return groups_; }
+
 void ContactProblem::reset(int rows) {
   if (rows < 0) throw std::invalid_argument("contact problem: the number of rows is not negative");
   rows_ = rows;

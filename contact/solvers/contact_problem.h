@@ -72,16 +72,16 @@ public:
   [[nodiscard]] double& w(int row, int column) { return w_[entry_place(row, column, rows_)]; }
 
   /// W, row-major, rows() x rows(); empty of a problem in factors.
-  [[nodiscard]] std::span<const double> matrix() const { return {w_.data(), w_.size()}; }
-  [[nodiscard]] std::span<double> matrix() { return {w_.data(), w_.size()}; }
+  [[nodiscard]] std::span<const double> matrix() const;
+  [[nodiscard]] std::span<double> matrix();
 
   /// b = gamma_f + E gamma^- [m/s].
-  [[nodiscard]] std::span<const double> vector() const { return {b_.data(), b_.size()}; }
-  [[nodiscard]] std::span<double> vector() { return {b_.data(), b_.size()}; }
+  [[nodiscard]] std::span<const double> vector() const;
+  [[nodiscard]] std::span<double> vector();
 
   /// Set of each row.
-  [[nodiscard]] std::span<const RowSet> sets() const { return {sets_.data(), sets_.size()}; }
-  [[nodiscard]] std::span<RowSet> sets() { return {sets_.data(), sets_.size()}; }
+  [[nodiscard]] std::span<const RowSet> sets() const;
+  [[nodiscard]] std::span<RowSet> sets();
 
   /// Groups of rows judged together, derived from the sets; call after the sets are filled.
   /// Throws std::invalid_argument when friction rows do not follow their normal row, or when the factors of
@@ -89,7 +89,7 @@ public:
   void group();
 
   /// Groups found by group().
-  [[nodiscard]] std::span<const RowGroup> groups() const { return {groups_.data(), groups_.size()}; }
+  [[nodiscard]] std::span<const RowGroup> groups() const;
   /// True if group() found one contact in the plane, with friction, and W is dense: nearly all problems.
   [[nodiscard]] bool is_one_planar_contact() const { return one_planar_contact_; }
 

@@ -317,6 +317,10 @@ ProblemFile load_problem(const std::string& path) { refuse(path); }
 
 namespace carom {
 
+void save_problem(const std::string& path, const ContactProblem& problem) {
+  save_problem(path, problem, ProblemNotes{});
+}
+
 void ContactProblem::save(const std::string& path) const { save_problem(path, *this); }
 
 ContactProblem ContactProblem::load(const std::string& path) { return load_problem(path).problem; }

@@ -32,7 +32,9 @@ struct ProblemFile {
 /// Writes a problem, every number exactly; an existing file is replaced only when the new one is complete.
 /// Throws FileError.
 CAROM_API void save_problem(const std::string& path, const ContactProblem& problem,
-                            const ProblemNotes& notes = {});
+                            const ProblemNotes& notes);
+/// The same without notes.
+CAROM_API void save_problem(const std::string& path, const ContactProblem& problem);
 
 /// Reads a problem and groups it. Throws FileError naming the file, the field, its value and what is allowed:
 /// W and b may hold "inf", "-inf" and "nan", sets must be such that ContactProblem::group() takes them, and W

@@ -37,6 +37,12 @@ double times_answers(const ResponseFactors& factors, const ResponseFactors::Row&
 
 }  // namespace
 
+// Made here: in the header this kind of a span would be compiled anew by every program.
+std::span<const ResponseFactors::Answer> ResponseFactors::answers(std::size_t row) const {
+  if (!any_bound()) return {};
+  return {bound.answers.data() + bound.first[row], bound.first[row + 1] - bound.first[row]};
+}
+
 void ResponseFactors::Bound::clear() {
   slots.clear();
   first.clear();

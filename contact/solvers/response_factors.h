@@ -62,10 +62,7 @@ struct CAROM_API ResponseFactors {
     return slot < bound.slots.size() && bound.slots[slot] != 0;
   }
   /// Answers of bound slots to an impulse along a row.
-  [[nodiscard]] std::span<const Answer> answers(std::size_t row) const {
-    if (!any_bound()) return {};
-    return {bound.answers.data() + bound.first[row], bound.first[row + 1] - bound.first[row]};
-  }
+  [[nodiscard]] std::span<const Answer> answers(std::size_t row) const;
   /// Number of slots.
   [[nodiscard]] std::size_t slots() const { return inverse_mass.size() / columns; }
   /// Entry of W.

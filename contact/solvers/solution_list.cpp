@@ -28,7 +28,7 @@ struct SolutionList::Workspace {
   std::vector<double> direction;  // null vector
 };
 
-SolutionList::SolutionList() : work_(std::make_unique<Workspace>()) {}
+SolutionList::SolutionList() : work_(new Workspace) {}
 SolutionList::~SolutionList() = default;
 SolutionList::SolutionList(SolutionList&&) noexcept = default;
 SolutionList& SolutionList::operator=(SolutionList&&) noexcept = default;

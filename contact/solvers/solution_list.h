@@ -7,10 +7,10 @@
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/core/export.h>
+#include <carom/core/owner.h>
 
 #include <cstddef>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -85,7 +85,7 @@ private:
   void set_scales(const ContactProblem& problem);
   Outcome conclude();
 
-  std::unique_ptr<Workspace> work_;
+  Owner<Workspace> work_;
   std::vector<double> impulses_, velocities_, rho_;
   std::vector<std::size_t> order_;
   std::size_t rows_ = 0, count_ = 0, end_velocities_ = 0;

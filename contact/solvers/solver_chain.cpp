@@ -118,7 +118,7 @@ bool SolverChain::Workspace::is_nearly_solved(const ContactProblem& problem, std
   return report.residual <= nearly_solved || residual_of_velocities(problem, impulse, xi) <= of_velocities;
 }
 
-SolverChain::SolverChain() : work_(std::make_unique<Workspace>()) {}
+SolverChain::SolverChain() : work_(new Workspace) {}
 SolverChain::~SolverChain() = default;
 SolverChain::SolverChain(SolverChain&&) noexcept = default;
 SolverChain& SolverChain::operator=(SolverChain&&) noexcept = default;

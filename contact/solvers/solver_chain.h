@@ -13,8 +13,8 @@
 #include <carom/contact/solvers/sweep_budget.h>
 #include <carom/contact/solvers/sweep_watch.h>
 #include <carom/core/export.h>
+#include <carom/core/owner.h>
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -92,7 +92,7 @@ private:
   void solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
 
   struct Workspace;
-  std::unique_ptr<Workspace> work_;
+  Owner<Workspace> work_;
 };
 
 }  // namespace carom

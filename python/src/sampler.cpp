@@ -2,6 +2,7 @@
 
 #include <carom/core/errors.h>
 #include <carom/core/layout.h>
+#include <carom/core/registry.h>
 
 #include <nanobind/ndarray.h>
 

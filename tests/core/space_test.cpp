@@ -52,7 +52,9 @@ TEST(PlanarSpace, TorqueAndSpinRowAreAdjointToLeverVelocity) {
     double torque = 0.0;
     Space<2>::add_torque(lever, force, &torque);
     EXPECT_NEAR(torque * spin, power, 16 * epsilon);
-    EXPECT_NEAR(Space<2>::spin_row(force, lever)[0] * spin, power, 16 * epsilon);
+    double row = 0.0;
+    Space<2>::spin_row(force, lever, &row);
+    EXPECT_NEAR(row * spin, power, 16 * epsilon);
   }
 }
 

@@ -1,4 +1,4 @@
-#include <carom/joints/constraint_part.h>
+#include <carom/joints/constraint_part_table.h>
 #include <carom/joints/driver.h>
 #include <carom/joints/prismatic.h>
 #include <carom/joints/revolute.h>
