@@ -19,8 +19,9 @@ FixedPointJudge::Verdict FixedPointJudge::judge_ahead(double change, double size
 FixedPointJudge::Verdict FixedPointJudge::judge(double change, double size, double part) {
   // Below this many roundings of the numbers themselves a change that no longer shrinks is rounding.
   constexpr double rounding_floor = 64.0 * std::numeric_limits<double>::epsilon();
-  // A change that has grown this much over the first few will not come back. The very first ones may vanish
-  // by chance: a body at rest, a contact that has not answered yet.
+  // A change that has grown this much over the first few will not come back, nor will numbers that have:
+  // where they settle is no answer to the step. The very first ones may vanish by chance: a body at rest, a
+  // contact that has not answered yet.
   constexpr double divergence = 1e8;
   constexpr int few = 3;
 
@@ -29,7 +30,11 @@ FixedPointJudge::Verdict FixedPointJudge::judge(double change, double size, doub
   last_ = change;
   ++sweeps_;
   if (!std::isfinite(change)) return Verdict::failed;
-  if (sweeps_ <= few) first_ = std::max(first_, change);
+  if (sweeps_ <= few) {
+    first_ = std::max(first_, change);
+    first_size_ = std::max(first_size_, size);
+  }
+  if (first_size_ > 0.0 && size > divergence * first_size_) return Verdict::failed;
   if (sweeps_ > 1 && change > floor && previous > 0.0) contraction_ = change / previous;
   if (change <= part * tolerance_) return Verdict::converged;
   if (sweeps_ > 1 && change >= previous && change <= floor) return Verdict::converged;

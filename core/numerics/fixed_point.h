@@ -37,7 +37,8 @@ private:
   double tolerance_;
   int max_sweeps_;
   int sweeps_ = 0;
-  double first_ = 0.0;  // largest of the first few changes
+  double first_ = 0.0;       // largest of the first few changes
+  double first_size_ = 0.0;  // and of their sizes
   double last_ = 0.0;
   double contraction_ = 0.0;
 };

@@ -59,6 +59,11 @@ public:
   [[noreturn]] void refuse_gain(const IslandProblem& problem, double gain) const;
 
 private:
+  struct FastestTurn {
+    BodyId body{};
+    double angle = 0.0;  // [rad]
+  };
+  [[nodiscard]] FastestTurn fastest_turn() const;
   void demand_finite_loads(const StateView& at) const;
   void find_cause(bool implicit) const;
   [[noreturn]] void fail_account() const;

@@ -69,6 +69,15 @@ TEST(FixedPoint, FailsWhenSweepsAreUsedUp) {
   EXPECT_EQ(judge.judge(0.81, 1.0), Verdict::failed);
 }
 
+TEST(FixedPoint, NumbersThatHaveGrownBeyondReasonAreNoAnswerWhereTheySettle) {
+  FixedPointJudge lost(1e-6, 100), at_rest(1e-6, 100);
+  for (int sweep = 0; sweep < 3; ++sweep) EXPECT_EQ(lost.judge(1e-2, 1.0), Verdict::go_on);
+  EXPECT_EQ(lost.judge(0.0, 1e9), Verdict::failed);
+  // Nothing is known of the size of what has not moved yet.
+  for (int sweep = 0; sweep < 3; ++sweep) (void)at_rest.judge(0.0, 0.0);
+  EXPECT_EQ(at_rest.judge(0.0, 1e9), Verdict::converged);
+}
+
 TEST(FixedPoint, FailsWhenItDiverges) {
   FixedPointJudge judge(1e-6, 1000000);
   double change = 1.0;
