@@ -81,6 +81,20 @@ TEST(SnappingChain, AFailureNamesTheBarThatTurnsFarthestAndAStep) {
   }
 }
 
+TEST(SnappingChain, SuggestedStepsComeThrough) {
+  Simulation simulation(folded_chain(50), TimeStepping{.step = 1e-3});
+  int failures = 0;
+  while (simulation.time() < end_time) {
+    try {
+      simulation.run_until(end_time);
+    } catch (const SolverError& error) {
+      ASSERT_LE(++failures, 6) << error.what();
+      simulation.switch_to(TimeStepping{.step = error.failure().suggested_step});
+    }
+  }
+  EXPECT_GT(failures, 0);
+}
+
 TEST(SnappingChain, StepControlComesThrough) {
   Simulation simulation(folded_chain(50), TimeStepping{.step = 1e-3, .control = StepControl{}});
   const double begin = simulation.energy().total();
