@@ -59,6 +59,7 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
       }
       const bool moved = (joined || joints != nullptr) && converge_joints(island, in);
+      demand_motion(island, in);
       return moved ? LoadsKnown::total : made.known;
     }
     for (const Index component : island.components) {
@@ -318,6 +319,16 @@ void IslandIteration::demand(NewtonIteration::Outcome outcome, Index component, 
   if (outcome == NewtonIteration::Outcome::singular) parts_->errors(in, component).fail_linearisation();
   if (outcome == NewtonIteration::Outcome::unsolved) {
     parts_->errors(in, component).fail_contact(parts_->contacts.problems().front());
+  }
+}
+
+/// Throws where the iteration has ended on the joints, but nowhere that the bodies go to.
+void IslandIteration::demand_motion(const StepIsland& island, const StepInput& in) {
+  for (const Index component : island.components) {
+    const JointStage* const joints = parts_->joints.of(component);
+    if (joints == nullptr) continue;
+    const StrayBody stray = joints->find_stray(in, parts_->trial);
+    if (stray.body.valid()) parts_->errors(in, component).fail_stray(stray);
   }
 }
 

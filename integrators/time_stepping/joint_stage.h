@@ -63,6 +63,12 @@ struct JointContacts {
   bool stale_matrix = false;  ///< another stage has made its own W
 };
 
+/// Where a step has gone astray: how far which body would be moved back, and the longest way of one.
+struct StrayBody {
+  BodyId body{};                 ///< not valid: none
+  double back = 0.0, way = 0.0;  ///< [m]
+};
+
 /// Joints of one component. Keeps memory.
 class CAROM_API JointStage {
 public:
@@ -90,6 +96,9 @@ public:
   [[nodiscard]] bool looks_ahead() const { return guessed_; }
   /// Distance of positions and velocities from obeying the joints, in units of what rounding lets them.
   [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
+  /// A body that would be moved back onto the joints farther than any goes in the step: what the iteration
+  /// has found is no motion from the start to the end.
+  [[nodiscard]] StrayBody find_stray(const StepInput& in, const StepTrial& trial) const;
   /// Velocities once more near a singular position, where the rounding of positions turns rows too much.
   void settle_velocities(StepTrial& trial);
   /// Brings the midpoint to the answer, rotations included.
@@ -112,7 +121,6 @@ public:
   /// True if anything but friction in joints takes part.
   [[nodiscard]] bool is_struck() const { return struck_; }
   [[nodiscard]] StepJointRows& rows() { return joints_.rows; }
-  [[nodiscard]] const StepJointRows& rows() const { return joints_.rows; }
   /// The joint whose constraints the last iterate violates most. \param violation out: by how much
   [[nodiscard]] JointId worst_joint(double& violation) const;
 

@@ -5,6 +5,7 @@
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/core/listed.h>
 #include <carom/integrators/run/failure_file.h>
+#include <carom/integrators/time_stepping/far_turn.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 
 #include <algorithm>
@@ -161,26 +162,35 @@ void StepErrors::find_cause(bool implicit) const {
   demand_finite_loads(at_end);
 }
 
-/// The body of a component that turns farthest in a step, as fast as at its start [rad].
-StepErrors::FastestTurn StepErrors::fastest_turn() const {
-  FastestTurn fastest;
-  const Layout& layout = *in_.assembly.layout();
-  const Range bodies = in_.assembly.components()[component_].bodies;
-  for (Index body = bodies.begin; body < bodies.end; ++body) {
-    const BodySlot slot = layout.bodies()[body];
-    if (slot.rotation == none) continue;
-    const double angle = in_.step * std::abs(in_.start.v[slot.v + 2]);
-    if (angle > fastest.angle) fastest = {layout.id(body), angle};
-  }
-  return fastest;
+/// The body that turns farthest, and a step in which that is not far.
+std::string StepErrors::tell_turn(SolverFailure& failure) const {
+  // A turn in a step, beyond which rows at its start say little of those at its end [rad].
+  constexpr double far = 0.2;
+  const FastestTurn fastest = fastest_turn(in_, component_);
+  failure.suggested_step = 0.5 * in_.step;
+  if (!(fastest.angle > far)) return {};
+  failure.suggested_step = std::min(failure.suggested_step, far / fastest.angle * in_.step);
+  failure.parts.push_back(system().name(fastest.body));
+  return " (" + failure.parts.back() + " by " + to_text(fastest.angle) + " rad)";
+}
+
+void StepErrors::fail_stray(const StrayBody& stray) const {
+  SolverFailure failure = this->failure();
+  failure.residual = stray.back;
+  failure.parts.push_back(system().name(stray.body));
+  const std::string turn = tell_turn(failure);
+  const std::string& body = failure.parts.front();
+  fail("joints turn too far within the step" + turn + ": " + body + " would be moved back onto them by " +
+           to_text(stray.back) + " m, where no body goes farther than " + to_text(stray.way) +
+           " m; allowed: a step in which they turn less, for instance " + to_text(failure.suggested_step) +
+           " s",
+       failure);
 }
 
 void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iteration, const JointStage* joints,
                                   std::span<const IslandProblem> problems) const {
   // The bound of the rating is pessimistic by itself; the rest is room for forces that stiffen on the way.
   constexpr double caution = 0.9;
-  // A turn in a step, beyond which rows at its start say little of those at its end [rad].
-  constexpr double far_turn = 0.2;
   std::vector<std::string> jumping;
   for (const IslandProblem& problem : problems) {
     if (!problem.changed_modes()) continue;
@@ -220,15 +230,8 @@ void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iterat
     message += "; by their derivatives at its start the force elements contract (rate " +
                to_text(rating.component_rate) + " together), so a force jumps or stiffens";
     if (joints != nullptr) {
-      const FastestTurn fastest = fastest_turn();
-      failure.suggested_step = 0.5 * in_.step;
-      message += ", or the joints turn far within the step";
-      if (fastest.angle > far_turn) {
-        failure.suggested_step = std::min(failure.suggested_step, far_turn / fastest.angle * in_.step);
-        failure.parts.push_back(system().name(fastest.body));
-        message += " (" + failure.parts.back() + " by " + to_text(fastest.angle) + " rad)";
-      }
-      message += " or are near a singular position";
+      message += ", or the joints turn far within the step" + tell_turn(failure) +
+                 " or are near a singular position";
     }
     if (!jumping.empty()) message += ", or contact does, which changes between modes: " + listed(jumping);
     failure.parts.insert(failure.parts.end(), jumping.begin(), jumping.end());

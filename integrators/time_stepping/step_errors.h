@@ -39,6 +39,8 @@ public:
   /// \param joints of the component; null: none \param problems of its contacts
   [[noreturn]] void fail_contraction(const FixedPointJudge& judge, Iteration iteration,
                                      const JointStage* joints, std::span<const IslandProblem> problems) const;
+  /// Bodies would be moved back onto the joints by more than their way in the step [m].
+  [[noreturn]] void fail_stray(const StrayBody& stray) const;
   /// A contact problem is not solved.
   [[noreturn]] void fail_contact(const IslandProblem& problem) const;
   /// Constraints join components with joints, which are not solved together.
@@ -59,11 +61,7 @@ public:
   [[noreturn]] void refuse_gain(const IslandProblem& problem, double gain) const;
 
 private:
-  struct FastestTurn {
-    BodyId body{};
-    double angle = 0.0;  // [rad]
-  };
-  [[nodiscard]] FastestTurn fastest_turn() const;
+  [[nodiscard]] std::string tell_turn(SolverFailure& failure) const;
   void demand_finite_loads(const StateView& at) const;
   void find_cause(bool implicit) const;
   [[noreturn]] void fail_account() const;
