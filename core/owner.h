@@ -18,7 +18,7 @@ public:
   explicit Owner(T* object) : object_(object) {}
   Owner(Owner&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
   Owner& operator=(Owner&& other) noexcept {
-    std::swap(object_, other.object_);
+    const Owner before(std::exchange(object_, std::exchange(other.object_, nullptr)));
     return *this;
   }
   ~Owner() { delete object_; }
