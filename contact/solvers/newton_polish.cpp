@@ -31,7 +31,8 @@ void NewtonPolish::set_row(const ContactProblem& problem, std::size_t row, doubl
                            double rho) {
   const std::size_t n = xi_.size();
   double* out = jacobian_.data() + row * n;
-  for (std::size_t j = 0; j < n; ++j) out[j] = of_xi * rho * problem.matrix()[row * n + j];
+  const double* const w = problem.matrix().data() + row * n;
+  for (std::size_t j = 0; j < n; ++j) out[j] = of_xi * rho * w[j];
   out[row] += own;
 }
 
@@ -56,7 +57,8 @@ void NewtonPolish::linearise_disc(const ContactProblem& problem, std::size_t row
     for (std::size_t j = 0; j < n; ++j) out[j] = 0.0;
     for (std::size_t l = 0; l < 2; ++l) {
       const double projector = radius / length * ((k == l ? 1.0 : 0.0) - u[k] * u[l]);
-      for (std::size_t j = 0; j < n; ++j) out[j] += projector * rho * problem.matrix()[(row + l) * n + j];
+      const double* const w = problem.matrix().data() + (row + l) * n;
+      for (std::size_t j = 0; j < n; ++j) out[j] += projector * rho * w[j];
       out[row + l] -= projector;
     }
     out[row + k] += 1.0;

@@ -14,9 +14,13 @@
 
 namespace carom {
 
+/// Numbers below this have fewer digits than others: a residual is no part of them.
+inline constexpr double least_scale =
+    std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+
 /// True if a group is a contact in the plane with friction: in large problems nearly all are.
-[[nodiscard]] inline bool is_planar_contact(const ContactProblem& problem, const RowGroup& group) {
-  const RowSet* const set = problem.sets().data() + group.first;
+[[nodiscard]] inline bool is_planar_contact(std::span<const RowSet> sets, const RowGroup& group) {
+  const RowSet* const set = sets.data() + group.first;
   return group.size == 2 && set[0].kind == SetKind::half_line && set[1].kind == SetKind::bounded_interval;
 }
 
@@ -58,7 +62,7 @@ struct PlanarAnswer {
   // Sums carry a NaN along where maxima may drop it.
   if (!(error_n + error_t + a.p_n + a.p_t + a.b_n + a.b_t < infinity) || !(scale < infinity)) return infinity;
   const double error = std::max(error_n, error_t);
-  return error > 0.0 ? error / scale : 0.0;
+  return error > 0.0 ? error / std::max(scale, least_scale) : 0.0;
 }
 
 /// Mode of the contact (contact_mode.h).

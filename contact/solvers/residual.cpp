@@ -32,10 +32,11 @@ double planar_distance(double friction, const double* p, const double* b, const 
 // max over the group's rows of |P - proj_C(P - rho xi)| [N s].
 double distance(const ContactProblem& problem, const RowGroup& group, std::span<const double> impulse,
                 std::span<const double> xi, double rho) {
+  const std::span<const RowSet> sets = problem.sets();
   double worst = 0.0;
   const auto last = static_cast<std::size_t>(group.first + group.size);
   for (auto i = static_cast<std::size_t>(group.first); i < last; ++i) {
-    const RowSet& set = problem.sets()[i];
+    const RowSet& set = sets[i];
     const double moved = impulse[i] - rho * xi[i];
     switch (set.kind) {
       case SetKind::half_line:
@@ -96,11 +97,12 @@ double largest_trace(const ContactProblem& problem) {
 
 Residual residual(const ContactProblem& problem, std::span<const double> impulse,
                   std::span<const double> xi) {
-  if (problem.rows() == 2 && problem.groups().size() == 1 && problem.sets()[0].kind == SetKind::half_line &&
-      problem.sets()[1].kind == SetKind::bounded_interval) {
-    const auto b = problem.vector();
-    return {planar_residual({problem.diagonal(0) + problem.diagonal(1), b[0], b[1],
-                             problem.sets()[1].coefficient, impulse[0], impulse[1], xi[0], xi[1]}),
+  const std::span<const RowSet> sets = problem.sets();
+  const std::span<const double> b = problem.vector();
+  if (problem.rows() == 2 && problem.groups().size() == 1 && sets[0].kind == SetKind::half_line &&
+      sets[1].kind == SetKind::bounded_interval) {
+    return {planar_residual({problem.diagonal(0) + problem.diagonal(1), b[0], b[1], sets[1].coefficient,
+                             impulse[0], impulse[1], xi[0], xi[1]}),
             0};
   }
   const GroupSteps steps(problem);
@@ -113,15 +115,15 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
     const RowGroup& group = groups[g];
     const auto first = static_cast<std::size_t>(group.first);
     double error = 0.0;
-    if (is_planar_contact(problem, group)) {
+    if (is_planar_contact(sets, group)) {
       const double rho = steps.of_trace(problem.diagonal(group.first) + problem.diagonal(group.first + 1));
-      error = planar_distance(problem.sets()[first + 1].coefficient, &impulse[first],
-                              &problem.vector()[first], &xi[first], rho, scale);
+      error =
+          planar_distance(sets[first + 1].coefficient, &impulse[first], &b[first], &xi[first], rho, scale);
     } else {
       const double rho = steps.of(group);
       for (std::size_t i = first; i < first + static_cast<std::size_t>(group.size); ++i) {
         scale = larger_magnitude(scale, impulse[i]);
-        scale = larger_magnitude(scale, problem.vector()[i] * rho);
+        scale = larger_magnitude(scale, b[i] * rho);
       }
       error = distance(problem, group, impulse, xi, rho);
     }
@@ -129,7 +131,7 @@ Residual residual(const ContactProblem& problem, std::span<const double> impulse
   }
   if (worst.value == 0.0 && scale < infinity) return worst;
   if (scale == 0.0) return {0.0, worst.group};
-  const double relative = worst.value / scale;
+  const double relative = worst.value / std::max(scale, least_scale);
   return {std::isfinite(relative) && scale < infinity ? relative : infinity, worst.group};
 }
 
@@ -143,7 +145,7 @@ double residual_of_velocities(const ContactProblem& problem, std::span<const dou
   }
   for (const double velocity : problem.vector()) largest = larger_magnitude(largest, velocity);
   if (worst == 0.0) return 0.0;
-  const double relative = worst / largest;
+  const double relative = worst / (largest > 0.0 ? std::max(largest, least_scale) : 0.0);
   return std::isfinite(relative) ? relative : infinity;
 }
 

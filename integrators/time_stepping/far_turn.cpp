@@ -2,6 +2,7 @@
 
 #include <carom/integrators/time_stepping/far_turn.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace carom {
@@ -17,6 +18,27 @@ FastestTurn fastest_turn(const StepInput& in, Index component) {
     if (angle > fastest.angle) fastest = {layout.id(body), angle};
   }
   return fastest;
+}
+
+double size_of(const Assembly& assembly, Range bodies, const std::vector<double>& lengths, const State& at) {
+  double size = 0.0;
+  for (Index body = bodies.begin; body < bodies.end; ++body) {
+    const BodySlot slot = assembly.layout()->bodies()[body];
+    for (Index q = slot.q; q < slot.q + slot.q_size; ++q) size = std::max(size, std::abs(at.q[q]));
+    if (slot.rotation != none) size = std::max(size, lengths[slot.v + 2]);
+  }
+  return size;
+}
+
+bool moves_far(const StepInput& in, const State& end) {
+  constexpr double far = 1e-3;
+  const std::vector<double> lengths = in.assembly.length_scales();
+  double way = 0.0;
+  for (std::size_t v = 0; v < lengths.size(); ++v) {
+    way = std::max(way, 0.5 * in.step * lengths[v] * (std::abs(in.start.v[v]) + std::abs(end.v[v])));
+  }
+  return way > far * size_of(in.assembly, {0, static_cast<Index>(in.assembly.layout()->bodies().size())},
+                             lengths, in.start);
 }
 
 }  // namespace carom

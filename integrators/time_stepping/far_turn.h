@@ -1,11 +1,13 @@
 #pragma once
 
 /// \file
-/// Bodies that turn far within a step.
+/// Bodies that turn or move far within a step, against the size of what they belong to.
 
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 #include <carom/integrators/time_stepping/step_input.h>
+
+#include <vector>
 
 namespace carom {
 
@@ -17,5 +19,13 @@ struct FastestTurn {
 
 /// Finds it.
 [[nodiscard]] CAROM_API FastestTurn fastest_turn(const StepInput& in, Index component);
+
+/// Size of some bodies and of where they are: their largest coordinate and radius of gyration [m].
+/// \param lengths Assembly::length_scales()
+[[nodiscard]] CAROM_API double size_of(const Assembly& assembly, Range bodies,
+                                       const std::vector<double>& lengths, const State& at);
+
+/// True if a body goes a thousandth of the size of the model in a step, by its speeds at both ends.
+[[nodiscard]] CAROM_API bool moves_far(const StepInput& in, const State& end);
 
 }  // namespace carom

@@ -1,6 +1,7 @@
 // Problem: the implicit equations of a step over one island of components.
 
 #include <carom/integrators/time_stepping/island_iteration.h>
+#include <carom/integrators/time_stepping/motion_check.h>
 #include <carom/integrators/time_stepping/returning_contacts.h>
 
 #include <algorithm>
@@ -59,7 +60,7 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
       }
       const bool moved = (joined || joints != nullptr) && converge_joints(island, in);
-      demand_motion(island, in);
+      demand_motion(island, in, *parts_);
       return moved ? LoadsKnown::total : made.known;
     }
     for (const Index component : island.components) {
@@ -279,6 +280,7 @@ void IslandIteration::follow(const StepInput& in, Index component) {
 /// bring the joints there however badly couplings contract. True if there were any.
 bool IslandIteration::converge_joints(const StepIsland& island, const StepInput& in) {
   constexpr double improved = 0.8;
+  constexpr double open = 1e5;                   // roundings
   JointStage* const joints = joints_of(island);  // null: of several components
   const auto violation = [&] {
     return joints != nullptr ? joints->violation(in, parts_->trial)
@@ -298,6 +300,7 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
     if (!(now < improved * left)) break;
     left = now;
   }
+  if (joints != nullptr && left > open) demand_closed(*joints, in, island.components.front(), *parts_);
   if (is_near_singular()) joints->settle_velocities(parts_->trial);
   for (const Index component : island.components) follow(in, component);
   return true;
@@ -319,16 +322,6 @@ void IslandIteration::demand(NewtonIteration::Outcome outcome, Index component, 
   if (outcome == NewtonIteration::Outcome::singular) parts_->errors(in, component).fail_linearisation();
   if (outcome == NewtonIteration::Outcome::unsolved) {
     parts_->errors(in, component).fail_contact(parts_->contacts.problems().front());
-  }
-}
-
-/// Throws where the iteration has ended on the joints, but nowhere that the bodies go to.
-void IslandIteration::demand_motion(const StepIsland& island, const StepInput& in) {
-  for (const Index component : island.components) {
-    const JointStage* const joints = parts_->joints.of(component);
-    if (joints == nullptr) continue;
-    const StrayBody stray = joints->find_stray(in, parts_->trial);
-    if (stray.body.valid()) parts_->errors(in, component).fail_stray(stray);
   }
 }
 

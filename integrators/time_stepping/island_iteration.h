@@ -59,7 +59,6 @@ private:
   [[nodiscard]] JointStage* joints_of(const StepIsland& island) const;
   [[nodiscard]] bool is_streamed(const StepIsland& island) const;
   void demand(NewtonIteration::Outcome outcome, Index component, const StepInput& in);
-  void demand_motion(const StepIsland& island, const StepInput& in);
   [[noreturn]] void fail_contraction(const StepIsland& island, const StepInput& in,
                                      const FixedPointJudge& judge);
 

@@ -1,7 +1,7 @@
 // Problem: end a step on the joints, with velocities that they allow, in contact too.
 
 #include <carom/core/dynamics/body_response.h>
-#include <carom/core/numerics/largest_of.h>
+#include <carom/integrators/time_stepping/far_turn.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 
 #include <algorithm>
@@ -277,22 +277,22 @@ double JointStage::violation(const StepInput& in, StepTrial& trial) {
   return joints_.violation(trial.end).worst();
 }
 
-StrayBody JointStage::find_stray(const StepInput& in, const StepTrial& trial) const {
-  // Of the extent of the positions: what gaps may have stood open at the start.
-  constexpr double unseen = 1e-9;
+StrayBody JointStage::find_stray(const StepInput& in, const StepTrial& trial, double tolerance) const {
+  // Of the size of the mechanism, and of the tolerance: what rounding may do at rest.
+  constexpr double unseen = 1e-9, tolerances = 10.0;
   StrayBody stray{.back = joints_.largest_displacement(), .way = joints_.longest_way(in, trial)};
-  if (!(stray.back > stray.way) || may_jump(breaks_, in)) return stray;  // rates that jump are no way
+  if (!(stray.back > stray.way + tolerances * tolerance)) return stray;
+  if (may_jump(breaks_, in)) return stray;  // rates that jump are no way
   const Assembly& assembly = *joints_.assembly;
-  const Component& all = assembly.components()[joints_.component];
-  if (!(stray.back > unseen * largest_of(all.q, [&](auto at) { return magnitude(at(trial.end.q.data())); })))
-    return stray;
   const JointArrays& arrays = *joints_.arrays;
+  const Component& all = assembly.components()[joints_.component];
+  const double size = size_of(assembly, all.bodies, arrays.lengths, trial.end);
+  if (!(stray.back > stray.way + unseen * size)) return stray;
   for (Index body = all.bodies.begin; body < all.bodies.end; ++body) {
     const BodySlot slot = assembly.layout()->bodies()[body];
     for (Index v = slot.v; v < slot.v + slot.v_size; ++v) {
-      if (arrays.lengths[v] * std::abs(arrays.displacement[v]) >= stray.back) {
-        stray.body = assembly.layout()->id(body);
-      }
+      const bool is_farthest = arrays.lengths[v] * std::abs(arrays.displacement[v]) >= stray.back;
+      if (is_farthest) stray.body = assembly.layout()->id(body);
     }
   }
   return stray;

@@ -98,7 +98,8 @@ public:
   [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
   /// A body that would be moved back onto the joints farther than any goes in the step: what the iteration
   /// has found is no motion from the start to the end.
-  [[nodiscard]] StrayBody find_stray(const StepInput& in, const StepTrial& trial) const;
+  /// \param tolerance of the iteration, below which nothing is seen [m]
+  [[nodiscard]] StrayBody find_stray(const StepInput& in, const StepTrial& trial, double tolerance) const;
   /// Velocities once more near a singular position, where the rounding of positions turns rows too much.
   void settle_velocities(StepTrial& trial);
   /// Brings the midpoint to the answer, rotations included.

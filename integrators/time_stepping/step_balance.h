@@ -117,6 +117,9 @@ public:
   [[nodiscard]] StepReport& report() { return result_.report; }
   /// Closes the account.
   [[nodiscard]] StepResult& finish(const StepInput& in);
+  /// After finish(): energy gained beyond all that loads, contact and the start of the step explain, where it
+  /// is a multiple of that: then the end that was found is none [J]; else 0.
+  [[nodiscard]] double unexplained_gain(const StepInput& in) const;
 
 private:
   void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,

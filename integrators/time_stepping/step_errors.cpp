@@ -5,7 +5,6 @@
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/core/listed.h>
 #include <carom/integrators/run/failure_file.h>
-#include <carom/integrators/time_stepping/far_turn.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 
 #include <algorithm>
@@ -160,31 +159,6 @@ void StepErrors::find_cause(bool implicit) const {
   StateView at_end = in_.start.view();
   at_end.time = in_.end_time;
   demand_finite_loads(at_end);
-}
-
-/// The body that turns farthest, and a step in which that is not far.
-std::string StepErrors::tell_turn(SolverFailure& failure) const {
-  // A turn in a step, beyond which rows at its start say little of those at its end [rad].
-  constexpr double far = 0.2;
-  const FastestTurn fastest = fastest_turn(in_, component_);
-  failure.suggested_step = 0.5 * in_.step;
-  if (!(fastest.angle > far)) return {};
-  failure.suggested_step = std::min(failure.suggested_step, far / fastest.angle * in_.step);
-  failure.parts.push_back(system().name(fastest.body));
-  return " (" + failure.parts.back() + " by " + to_text(fastest.angle) + " rad)";
-}
-
-void StepErrors::fail_stray(const StrayBody& stray) const {
-  SolverFailure failure = this->failure();
-  failure.residual = stray.back;
-  failure.parts.push_back(system().name(stray.body));
-  const std::string turn = tell_turn(failure);
-  const std::string& body = failure.parts.front();
-  fail("joints turn too far within the step" + turn + ": " + body + " would be moved back onto them by " +
-           to_text(stray.back) + " m, where no body goes farther than " + to_text(stray.way) +
-           " m; allowed: a step in which they turn less, for instance " + to_text(failure.suggested_step) +
-           " s",
-       failure);
 }
 
 void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iteration, const JointStage* joints,

@@ -39,6 +39,10 @@ public:
   /// \param joints of the component; null: none \param problems of its contacts
   [[noreturn]] void fail_contraction(const FixedPointJudge& judge, Iteration iteration,
                                      const JointStage* joints, std::span<const IslandProblem> problems) const;
+  /// A joint stays open. \param gap by how much
+  [[noreturn]] void fail_open(JointId joint, double gap) const;
+  /// The step has gained energy that nothing explains [J].
+  [[noreturn]] void fail_gain(double gain) const;
   /// Bodies would be moved back onto the joints by more than their way in the step [m].
   [[noreturn]] void fail_stray(const StrayBody& stray) const;
   /// A contact problem is not solved.

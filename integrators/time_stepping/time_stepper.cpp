@@ -4,6 +4,7 @@
 // of contact and impact contact/island_problem.cpp, its solvers contact/solvers/solver_chain.cpp and those
 // that it calls.
 
+#include <carom/integrators/time_stepping/far_turn.h>
 #include <carom/integrators/time_stepping/gap_rounding.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
 
@@ -99,6 +100,8 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
   }
   try {
     StepResult& result = uncoupled_ ? make_uncoupled_step(in) : make_step(in);
+    const double gain = balance_.unexplained_gain(in);
+    if (gain > 0.0 && moves_far(in, parts_.trial.end)) parts_.errors(in, 0).fail_gain(gain);
     parts_.contacts.add_statistics(companion.contact_statistics);
     if (parts_.located.on()) parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();

@@ -122,6 +122,12 @@ TEST(Residual, NothingToDoIsNoError) {
   EXPECT_EQ(judge(empty, {}), 0.0);
 }
 
+TEST(Residual, NumbersWithoutDigitsAreNoPartOfThemselves) {
+  constexpr double few_digits = 1e-316;
+  EXPECT_LE(judge(lone_row({}, 2.0, -3.0 * few_digits), {0.0}), 1e-20);
+  EXPECT_EQ(judge(lone_row({}, 2.0, -3e-280), {0.0}), 1.0);
+}
+
 TEST(Residual, NumbersThatAreNoneAreInfinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(judge(lone_row({}, 1.0, -1.0), {nan}), infinity);
