@@ -136,8 +136,9 @@ void StepBalance::book_velocity_projection(double lost) {
 }
 
 double StepBalance::unexplained_gain(const StepInput& in) const {
-  // Loads between start and end may do some times the work of their mean; a multiple of all is none.
-  constexpr double most = 10.0;
+  // In steps too long for stiff springs loads may do some hundred times the work of their mean; an end with
+  // more than this is none.
+  constexpr double most = 1e4;
   constexpr double rounding = 1e-9;  // of the potential
   const double gain = -result_.flows[EnergyFlow::coupling_discretisation];
   const double kinetic = result_.stored[StoredEnergy::kinetic];
