@@ -99,7 +99,7 @@ TEST(SnappingChain, StepControlComesThrough) {
   Simulation simulation(folded_chain(50), TimeStepping{.step = 1e-3, .control = StepControl{}});
   const double begin = simulation.energy().total();
   simulation.run_until(end_time);
-  // What the error of steps across the snap costs; with a fixed step of 1e-4 s 5e-3 J.
+  // Steps across the snap cost some of the energy; with a fixed step of 1e-4 s 5e-3 J.
   EXPECT_LE(std::abs(simulation.energy().total() - begin), 5e-3 * available);
 }
 
