@@ -1,5 +1,6 @@
-// Problem: say which body of a mechanism turns too far for the step.
+// Problem: how far bodies turn and go in a step, and how large what they belong to is.
 
+#include <carom/core/numerics/largest_of.h>
 #include <carom/integrators/time_stepping/far_turn.h>
 
 #include <algorithm>
@@ -20,6 +21,12 @@ FastestTurn fastest_turn(const StepInput& in, Index component) {
   return fastest;
 }
 
+double longest_way(const StepInput& in, Range v, const std::vector<double>& lengths, const State& end) {
+  return 0.5 * in.step * largest_of(v, [&](auto at) {
+           return at(lengths.data()) * (magnitude(at(in.start.v.data())) + magnitude(at(end.v.data())));
+         });
+}
+
 double size_of(const Assembly& assembly, Range bodies, const std::vector<double>& lengths, const State& at) {
   double size = 0.0;
   for (Index body = bodies.begin; body < bodies.end; ++body) {
@@ -33,12 +40,9 @@ double size_of(const Assembly& assembly, Range bodies, const std::vector<double>
 bool moves_far(const StepInput& in, const State& end) {
   constexpr double far = 1e-3;
   const std::vector<double> lengths = in.assembly.length_scales();
-  double way = 0.0;
-  for (std::size_t v = 0; v < lengths.size(); ++v) {
-    way = std::max(way, 0.5 * in.step * lengths[v] * (std::abs(in.start.v[v]) + std::abs(end.v[v])));
-  }
-  return way > far * size_of(in.assembly, {0, static_cast<Index>(in.assembly.layout()->bodies().size())},
-                             lengths, in.start);
+  const Range bodies{0, static_cast<Index>(in.assembly.layout()->bodies().size())};
+  const double way = longest_way(in, {0, in.assembly.layout()->v_size()}, lengths, end);
+  return way > far * size_of(in.assembly, bodies, lengths, in.start);
 }
 
 }  // namespace carom

@@ -20,8 +20,13 @@ struct FastestTurn {
 /// Finds it.
 [[nodiscard]] CAROM_API FastestTurn fastest_turn(const StepInput& in, Index component);
 
+/// Longest way of a body in a step, by its speeds at both ends; angles times the radius of gyration [m].
+/// \param v velocities of some bodies \param lengths Assembly::length_scales()
+[[nodiscard]] CAROM_API double longest_way(const StepInput& in, Range v, const std::vector<double>& lengths,
+                                           const State& end);
+
 /// Size of some bodies and of where they are: their largest coordinate and radius of gyration [m].
-/// \param lengths Assembly::length_scales()
+/// \param lengths likewise
 [[nodiscard]] CAROM_API double size_of(const Assembly& assembly, Range bodies,
                                        const std::vector<double>& lengths, const State& at);
 

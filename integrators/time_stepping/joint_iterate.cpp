@@ -150,13 +150,6 @@ double JointIterate::largest_displacement() const {
   });
 }
 
-double JointIterate::longest_way(const StepInput& in, const StepTrial& trial) const {
-  return 0.5 * in.step * largest_of(v(), [&](auto at) {
-           return at(arrays->lengths.data()) *
-                  (magnitude(at(in.start.v.data())) + magnitude(at(trial.end.v.data())));
-         });
-}
-
 double JointIterate::work(const StepTrial& trial) {
   const Range v = this->v();
   std::vector<double>& masses = arrays->scratch;

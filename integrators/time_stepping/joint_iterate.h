@@ -69,8 +69,6 @@ struct CAROM_API JointIterate {
   [[nodiscard]] JointViolation violation(const State& end);
   /// Largest displacement of a body back onto the joints; angles times the radius of gyration [m].
   [[nodiscard]] double largest_displacement() const;
-  /// Longest way of a body in the step, by its speeds at both ends; angles likewise [m].
-  [[nodiscard]] double longest_way(const StepInput& in, const StepTrial& trial) const;
   /// Work of the impulses along the mean velocities [J].
   [[nodiscard]] double work(const StepTrial& trial);
 

@@ -280,7 +280,8 @@ double JointStage::violation(const StepInput& in, StepTrial& trial) {
 StrayBody JointStage::find_stray(const StepInput& in, const StepTrial& trial, double tolerance) const {
   // Of the size of the mechanism, and of the tolerance: what rounding may do at rest.
   constexpr double unseen = 1e-9, tolerances = 10.0;
-  StrayBody stray{.back = joints_.largest_displacement(), .way = joints_.longest_way(in, trial)};
+  StrayBody stray{.back = joints_.largest_displacement(),
+                  .way = longest_way(in, joints_.v(), joints_.arrays->lengths, trial.end)};
   if (!(stray.back > stray.way + tolerances * tolerance)) return stray;
   if (may_jump(breaks_, in)) return stray;  // rates that jump are no way
   const Assembly& assembly = *joints_.assembly;
