@@ -130,7 +130,10 @@ void IslandProblem::build_any(const double* velocity_before, BodyResponse* respo
   slides_.assign(constraints.size(), 0.0);
   if (!factored || response == nullptr) {
     write_rows({0, static_cast<Index>(constraints.size())}, velocity_before);
-    if (!factored) problem_.group();  // factors are still to be written
+    if (!factored) {  // factors are still to be written
+      problem_.group();
+      if (start && constraints.size() > 1) start(constraints, answer_.impulse.data());
+    }
     if (response != nullptr) respond(*response);
     return;
   }

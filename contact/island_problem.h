@@ -48,14 +48,14 @@ struct IslandOptions {
 class CAROM_API IslandProblem {
 public:
   explicit IslandProblem(const IslandOptions& options = {}) : options_(options) {}
-  /// Writes impulses from which sweeps start, by row, of some constraints one behind the other.
+  /// Writes impulses from which solvers start, by row, of some constraints one behind the other.
   using SweepStart = FunctionRef<void(std::span<const Constraint> constraints, double* impulses)>;
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
   /// forgotten; respond() is next, unless a response is given. Both throw SolverError for more constraints
   /// than W in full has room for.
   /// \param response makes W at once: of a large island for some constraints at a time, while these are in a
-  /// near cache, which does not hold all \param start asked for all constraints of an island whose W is left
-  /// in factors at once; nothing: sweeps start from zero
+  /// near cache, which does not hold all \param start asked for all of several constraints; nothing: solvers
+  /// start from zero
   void build(std::span<const Constraint> constraints, const double* velocity_before,
              BodyResponse* response = nullptr, SweepStart start = {});
   /// Makes W. Of a response that is only nearly symmetric W takes one half; that is good enough for

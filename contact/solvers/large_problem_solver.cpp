@@ -4,6 +4,8 @@
 
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/contact/solvers/planar_certificate.h>
+#include <carom/contact/solvers/warm_start.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,10 +14,6 @@
 namespace carom {
 
 namespace {
-
-/// Residual that sweeps aim at where exact solvers would have been the choice, were there fewer contacts.
-/// Bodies at rest stay where they are, to the rounding of places.
-constexpr double exact_aim = 1e-14;
 
 /// True of a single body, and of bodies that answer together.
 bool demands_exact(const ContactProblem& problem) {
@@ -100,8 +98,10 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
   report.tried = 1u << id;
   const bool is_small = contacts <= most_exact, is_exacting = demands_exact(problem);
   Residual found = judge(problem, impulse, xi);
+  const bool is_certified = found.value <= certified_start;
   SweepBudget budget = budget_;
-  if (is_exacting) budget.residual = std::min(budget.residual, exact_aim);
+  // Exact solvers would have been the choice, were there fewer contacts.
+  if (is_exacting) budget.residual = std::min(budget.residual, certified_start);
   if (!(found.value <= budget.residual)) {
     budget.sweeps = sweeps_of(problem);
     // Sweeps over few contacts cost less than anything else: all that there are.
@@ -117,7 +117,7 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
   const bool is_polished =
       is_left && (contacts <= most_polished ||
                   (is_exacting && swept == Outcome::not_solved && problem.rows() <= most_dense_rows));
-  if (is_small ? !(found.value <= NewtonPolish::round_off) : is_polished) {
+  if (is_small ? !is_certified && !(found.value <= NewtonPolish::round_off) : is_polished) {
     polish(problem, impulse);
     found = judge(problem, impulse, xi);
   }

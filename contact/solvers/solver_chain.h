@@ -57,8 +57,9 @@ public:
   /// Likewise from a start (if `solution.known`), which it replaces. Several contacts keep to the modes of
   /// the start as long as they are those of a solution, and solvers are spared; one contact is asked for its
   /// solution first, which costs less. Only solvers can tell that there are several solutions; the report
-  /// keeps to their word. Sweeps over a problem in factors start from `solution.impulse` in any case, and
-  /// need none where it is an answer. \param solution `impulse` sized rows()
+  /// keeps to their word. Without a solution before, several contacts start from `solution.impulse` all the
+  /// same: where that is an answer to rounding (certified_start) no solver is asked, and sweeps over a
+  /// problem in factors start from it. \param solution `impulse` sized rows()
   void solve(const ContactProblem& problem, ContactSolution& solution);
 
   /// The same by one solver alone, polished and judged as in the chain. A solver that is not made for the

@@ -15,6 +15,10 @@
 
 namespace carom {
 
+/// Residual up to which impulses to start from are an answer as they are, so that nothing is factored:
+/// rounding of the sums that it is made of. Bodies at rest stay where they are, to the rounding of places.
+inline constexpr double certified_start = 1e-14;
+
 /// Solves a problem in given modes. Keeps memory only.
 class CAROM_API WarmStart {
 public:

@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Impulses of the contacts of the last step, by key: where sweeps over large islands start in the next one
-/// (contact/solvers/nonlinear_cg_solver.h). Contacts of islands that are solved exactly are not kept.
+/// Impulses of the contacts of the last step, by key, but for contacts that were solved one by one: where
+/// solvers start in the next step. At rest they are its answer as they are (contact/solvers/warm_start.h).
 
 #include <carom/core/constraint_table.h>
 
@@ -12,7 +12,7 @@
 
 namespace carom {
 
-/// Where sweeps over a contact start.
+/// Where solvers start at a contact.
 struct SweepStart {
   std::array<double, 2> impulse{};  ///< along its rows [N s]
   int kept = 0;                     ///< steps in a row whose answer it was as it is, up to `most_kept`

@@ -24,7 +24,8 @@ public:
       const Index known = before_.contacts.find(constraint.key, next_);
       if (known != none) next_ = known + 1;
       for (std::size_t row = 0; row < static_cast<std::size_t>(constraint.rows); ++row) {
-        *impulses++ = known == none ? 0.0 : longer * before_.starts[known].impulse[row];
+        const bool is_kept = known != none && row < before_.starts[known].impulse.size();
+        *impulses++ = is_kept ? longer * before_.starts[known].impulse[row] : 0.0;
       }
     }
   }
