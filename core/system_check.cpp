@@ -3,6 +3,7 @@
 #include <carom/core/enum_name.h>
 #include <carom/core/listed.h>
 #include <carom/core/stored_parts.h>
+#include <carom/core/touching_parts.h>
 
 #include <algorithm>
 #include <array>
@@ -24,108 +25,6 @@ namespace {
 using PartNames = std::vector<std::string>;
 
 std::string listed(const PartNames& parts) { return carom::listed(parts, 3); }
-
-/// "material 'steel'".
-std::string name_of(const SurfaceTable& surfaces, MaterialId material) {
-  return material.valid() ? "material '" + surfaces.name(material.serial) + "'" : "no material";
-}
-
-/// A material and a filter, the first part that has both, and bodies of it.
-struct Toucher {
-  MaterialId material;
-  ContactFilter filter;
-  std::string name;                     // of the part
-  std::string of_body;                  // of a shape: " of rigid body 'log'"
-  std::vector<Index> extended, points;  // at most two bodies each: more do not change what can meet
-
-  void take(Index body, bool is_point) {
-    std::vector<Index>& bodies = is_point ? points : extended;
-    if (bodies.size() < 2 && (bodies.empty() || bodies.front() != body)) bodies.push_back(body);
-  }
-};
-
-/// Everything of bodies that can touch.
-struct Touching {
-  std::vector<Toucher> kinds;  // by material and filter
-  PartNames intended;          // shapes, and particles with a material: made to touch something
-  bool any = false;
-};
-
-Touching touching_parts(const System& system) {
-  Touching all;
-  std::map<std::array<std::uint32_t, 3>, std::size_t> places;  // of kinds
-  const auto add = [&](MaterialId material, const ContactFilter& filter, bool intended, Index body,
-                       bool is_point, auto id) {
-    constexpr bool is_shape = std::is_same_v<decltype(id), ShapeId>;
-    all.any = true;
-    if (intended) all.intended.push_back(system.name(id));
-    const auto [known, is_new] =
-        places.try_emplace({material.serial, filter.groups, filter.touches}, all.kinds.size());
-    if (is_new) {
-      std::string of = is_shape ? " of " + system.name(BodyId{body, system.token()}) : "";
-      all.kinds.push_back({material, filter, system.name(id), std::move(of), {}, {}});
-    }
-    all.kinds[known->second].take(body, is_point);
-  };
-  // PartNames are made of few parts only where there are shapes on ground: then none is listed as intended.
-  const bool lists = system.obstacles().empty();
-  for (const auto& entry : system.body_kinds().entries()) {
-    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
-      if (!entry.kind->has_contact_point(slot)) continue;
-      const MaterialId material = entry.kind->material(slot);
-      const Index serial = entry.serials[slot];
-      add(material, entry.kind->filter(slot), lists && material.valid(), serial, true,
-          BodyId{serial, system.token()});
-    }
-  }
-  std::vector<RoundedPoint> points;
-  for (const auto& entry : system.shape_kinds().entries()) {
-    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
-      points.clear();
-      entry.kind->rounded_points(slot, points);
-      const bool is_point = points.size() == 1 && points.front().radius == 0.0;
-      add(entry.kind->material(slot), entry.kind->filter(slot), lists, entry.kind->body(slot).serial,
-          is_point, ShapeId{entry.serials[slot], system.token()});
-    }
-  }
-  return all;
-}
-
-/// True if bodies of two kinds can touch each other: two bodies, of which points do not touch points.
-bool can_touch(const Toucher& a, const Toucher& b) {
-  const auto differ = [](const std::vector<Index>& some, const std::vector<Index>& others) {
-    return std::any_of(some.begin(), some.end(), [&](Index body) {
-      return std::any_of(others.begin(), others.end(), [&](Index other) { return other != body; });
-    });
-  };
-  if (!may_touch(a.filter, b.filter)) return false;
-  return differ(a.extended, b.extended) || differ(a.extended, b.points) || differ(a.points, b.extended);
-}
-
-/// True if bodies touch each other by some law.
-bool any_touch(const System& system, const Touching& touching) {
-  for (const Toucher& a : touching.kinds) {
-    for (const Toucher& b : touching.kinds) {
-      if (can_touch(a, b) && system.law(a.material, b.material)) return true;
-    }
-  }
-  return false;
-}
-
-/// True if bodies of two materials do.
-bool touch(const Touching& touching, MaterialId a, MaterialId b) {
-  for (const Toucher& one : touching.kinds) {
-    for (const Toucher& other : touching.kinds) {
-      if (one.material == a && other.material == b && can_touch(one, other)) return true;
-    }
-  }
-  return false;
-}
-
-bool has(const Touching& touching, MaterialId material) {
-  return std::any_of(touching.kinds.begin(), touching.kinds.end(),
-                     [&](const Toucher& toucher) { return toucher.material == material; });
-}
 
 /// Materials of shapes on ground.
 std::vector<MaterialId> ground_materials(const System& system) {
@@ -252,34 +151,12 @@ void find_contacts_without_law(const System& system, const SurfaceTable& surface
       if (!may || system.law(toucher.material, obstacle)) continue;
       const std::string name = system.name(obstacle);
       std::string text = "contact of " + toucher.name + toucher.of_body + " on " + name +
-                         ": law is not given between " + name_of(surfaces, toucher.material) + " and " +
-                         name_of(surfaces, material) +
+                         ": law is not given between " + material_name(surfaces, toucher.material) + " and " +
+                         material_name(surfaces, material) +
                          "; allowed: a Surface on the obstacle, between the two materials or as default law";
       out.push_back({FindingKind::contact_without_law, {toucher.name, name}, std::move(text)});
     }
   }
-}
-
-/// Finds materials whose bodies may meet and have no law, where bodies touch each other by another one.
-void find_pairs_without_law(const System& system, const SurfaceTable& surfaces, const Touching& touching,
-                            std::vector<ModelFinding>& out) {
-  if (!any_touch(system, touching)) return;
-  const std::vector<Toucher>& kinds = touching.kinds;
-  PartNames parts, told;
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
-    for (std::size_t j = 0; j <= i && kinds[i].material.valid(); ++j) {
-      const Toucher &a = kinds[i], &b = kinds[j];
-      if (!b.material.valid() || !can_touch(a, b) || system.law(a.material, b.material)) continue;
-      parts.push_back(b.name + " and " + (i == j ? "another one of its material" : a.name));
-      told.push_back(parts.back() + " (" + name_of(surfaces, b.material) +
-                     (i == j ? "" : " and " + name_of(surfaces, a.material)) + ")");
-    }
-  }
-  if (parts.empty()) return;
-  std::string text = listed(told) +
-                     ": there is no law between their materials, so that such bodies pass through each "
-                     "other; allowed: a law between the two materials, a default law, or filters";
-  out.push_back({FindingKind::contact_without_law, std::move(parts), std::move(text)});
 }
 
 }  // namespace
@@ -294,7 +171,7 @@ std::vector<ModelFinding> System::check() const {
   for (const auto& [pair, law] : stored().surfaces.pairs()) {
     const MaterialId a{pair.first, token_}, b{pair.second, token_};
     if ((is_solid(a) && has(touching, b)) || (is_solid(b) && has(touching, a))) continue;
-    if (touch(touching, a, b)) continue;
+    if (can_touch(touching, a, b)) continue;
     const std::string &given_a = stored().surfaces.name(a.serial),
                       &given_b = stored().surfaces.name(b.serial);
     const std::string name_a = "'" + given_a + "'", name_b = "'" + given_b + "'";
@@ -309,7 +186,7 @@ std::vector<ModelFinding> System::check() const {
     }
     found.push_back({FindingKind::law_without_effect, {given_a, given_b}, text});
   }
-  find_pairs_without_law(*this, stored().surfaces, touching, found);
+  if (auto pairs = bodies_without_law(*this, stored().surfaces, touching)) found.push_back(*std::move(pairs));
   if (solid.empty()) {
     if (!touching.intended.empty() && !any_touch(*this, touching)) {
       std::string text = listed(touching.intended) +

@@ -4,10 +4,12 @@
 
 namespace carom {
 
-void write_findings(Log& log, std::span<const ModelFinding> findings) {
+std::vector<std::string> finding_lines(std::span<const ModelFinding> findings) {
+  std::vector<std::string> lines;
   for (const ModelFinding& finding : findings) {
-    log.write(LogLevel::warning, std::string(to_string(finding.kind)) + ": " + finding.text);
+    lines.push_back(std::string(to_string(finding.kind)) + ": " + finding.text);
   }
+  return lines;
 }
 
 namespace {

@@ -11,11 +11,13 @@
 
 #include <exception>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace carom {
 
-/// Writes what System::check() found, as warnings.
-void write_findings(Log& log, std::span<const ModelFinding> findings);
+/// What System::check() found, a line each: "contact without a law: ...".
+[[nodiscard]] std::vector<std::string> finding_lines(std::span<const ModelFinding> findings);
 
 /// Writes a gain of energy by an impact, and contacts with several solutions, as warnings. \param detector of
 /// the model, for names

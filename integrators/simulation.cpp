@@ -31,6 +31,7 @@ void Simulation::Impl::step(Simulation& simulation, double limit, Stops stops) {
     call_actions(simulation, thrown);
     rethrow(thrown);
   }
+  show_findings();
   const std::int64_t told = log.enabled(LogLevel::error) ? events_counted() : 0;
   {
     const CallGuard::Scope scope(guard, CallGuard::Caller::law);
@@ -74,13 +75,20 @@ std::int64_t Simulation::Impl::events_counted() const {
   return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
 }
 
+/// Findings once for every model on the standard error stream, unless the user has taken the log.
+void Simulation::Impl::show_findings() {
+  if (log_taken || findings_written || report.findings.empty()) return;
+  findings_written = true;
+  for (const std::string& line : finding_lines(report.findings)) std::cerr << "carom: " << line << "\n";
+}
+
 /// Findings once for every model, as soon as there is a sink.
 void Simulation::Impl::write_to_log(std::int64_t told) {
   if (!log.enabled(LogLevel::error)) return;  // the highest level of a line
   const CallGuard::Scope scope(guard, CallGuard::Caller::log_sink);
   if (!findings_written && log.enabled(LogLevel::warning)) {
     findings_written = true;
-    write_findings(log, report.findings);
+    for (const std::string& line : finding_lines(report.findings)) log.write(LogLevel::warning, line);
   }
   const Detector& detector = model->machines.detector();
   write_step_news(log, report, detector);
@@ -255,7 +263,10 @@ void Simulation::clear_events() {
 std::string Simulation::name(const ConstraintKey& key) const {
   return impl_->model->machines.detector().name(key);
 }
-Log& Simulation::log() { return impl_->log; }
+Log& Simulation::log() {
+  impl_->log_taken = true;
+  return impl_->log;
+}
 void Simulation::show_progress(bool on) { impl_->progress = on; }
 
 void Simulation::save(const std::string& path) const {

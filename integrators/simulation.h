@@ -45,7 +45,8 @@ public:
 
   /// Assembles `system`, with its described positions and velocities, at time 0. If these do not satisfy the
   /// joints they are corrected (joint_closure.h); report().projected has the largest displacement, and
-  /// report().findings what System::check() found, which log() gets as warnings at the first step. Throws
+  /// report().findings what System::check() found, which the first step writes to the standard error stream,
+  /// or to log() if that was called before. Throws
   /// ModelError for an invalid model or option, and in the event-driven mode for bodies deeper in shapes on
   /// ground than EventDriven::gap_tolerance; so do edit() and set_state().
   Simulation(System system, Mode mode);
@@ -134,7 +135,8 @@ public:
   /// Throws ModelError for parts of another model.
   [[nodiscard]] std::string name(const EventRecord& event) const;
 
-  /// Log of warnings and notes; nothing is written until it has a sink.
+  /// Log of warnings and notes; nothing is written until it has a sink. Whoever calls this before the first
+  /// step takes the findings too: they go to this log, and not to the standard error stream.
   [[nodiscard]] Log& log();
   /// Draws a progress bar during run_until() where the standard error is a terminal and the run is long.
   void show_progress(bool on);

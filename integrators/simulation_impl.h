@@ -63,6 +63,7 @@ struct Simulation::Impl {
   void rethrow(const std::vector<std::exception_ptr>& thrown);
   [[nodiscard]] std::int64_t events_counted() const;
   void write_to_log(std::int64_t told);
+  void show_findings();
 
   CallGuard guard;
   StopRequest stop;
@@ -75,7 +76,7 @@ struct Simulation::Impl {
   std::size_t unlisted = 0;  // of the latest events
   Callbacks callbacks;
   Log log;
-  bool report_seen = false, findings_written = false, progress = false;
+  bool report_seen = false, log_taken = false, findings_written = false, progress = false;
 };
 
 }  // namespace carom

@@ -110,8 +110,10 @@ TEST(SystemCheck, ContactsWithoutALaw) {
   system.add(HalfPlane{.normal = {1.0, 0.0}}, rough, "wall");
   system.add(Particle{.mass = 1.0}, "ball");
   disc_of(system, system.material("steel"), {0.0, 1.0});
-  const auto found = system.check();
-  ASSERT_EQ(found.size(), 2U);  // a material each
+  const auto all = system.check();
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].parts, std::vector<std::string>{"particle 'ball' and disc #0"});
+  const std::vector<ModelFinding> found(all.begin() + 1, all.end());  // a material each
   for (const ModelFinding& finding : found) {
     EXPECT_EQ(finding.kind, FindingKind::contact_without_law);
     EXPECT_EQ(finding.parts.back(), "half-plane 'floor'");
@@ -120,6 +122,52 @@ TEST(SystemCheck, ContactsWithoutALaw) {
   EXPECT_EQ(found[1].parts.front(), "disc #0");
   EXPECT_TRUE(says(found[0], "law is not given between no material and no material")) << found[0].text;
   EXPECT_TRUE(says(found[1], "law is not given between material 'steel' and no material")) << found[1].text;
+}
+
+TEST(SystemCheck, BodiesThatPassThroughEachOtherAboveAFloorWithItsOwnLaw) {
+  System system;
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, rough);
+  const BodyId one = disc_of(system, {}, {0.0, 0.1});
+  EXPECT_TRUE(system.check().empty());  // alone it meets the floor only
+  const BodyId other = disc_of(system, {}, {0.0, 0.4});
+  const auto found = system.check();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].kind, FindingKind::contact_without_law);
+  EXPECT_TRUE(says(found[0], "disc #0 and another one of its material (no material)")) << found[0].text;
+  EXPECT_TRUE(says(found[0], "pass through each other")) << found[0].text;
+  EXPECT_TRUE(says(found[0], "System::set_default_law()")) << found[0].text;
+
+  System with_law = system;
+  with_law.set_default_law(rough);
+  EXPECT_TRUE(with_law.check().empty());
+  // Two bodies that a joint binds do not touch each other, nor do those of which that was decided.
+  System bound = system;
+  bound.add(Rod{.from = one, .to = other});
+  EXPECT_TRUE(bound.check().empty());
+  bound.allow_contact(one, other, true);
+  EXPECT_EQ(bound.check().size(), 1U);
+  System decided = system;
+  decided.allow_contact(one, other, false);
+  EXPECT_TRUE(decided.check().empty());
+  disc_of(decided, {}, {0.0, 0.7});
+  EXPECT_EQ(decided.check().size(), 1U);
+  // A particle passes through a disc; particles never meet.
+  System particles;
+  particles.add(HalfPlane{.normal = {0.0, 1.0}}, rough);
+  particles.add(Particle{.mass = 1.0, .position = {0.0, 1.0}});
+  particles.add(Particle{.mass = 1.0, .position = {0.0, 2.0}});
+  EXPECT_TRUE(particles.check().empty());
+  disc_of(particles, {}, {0.0, 3.0});
+  EXPECT_EQ(particles.check().size(), 1U);
+  // Filters say that bodies are to pass.
+  System filtered;
+  const ContactFilter ground_only{.groups = 2, .touches = 1};
+  filtered.add(HalfPlane{.normal = {0.0, 1.0}}, rough);
+  for (const double height : {1.0, 2.0}) {
+    const BodyId body = filtered.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, height}});
+    filtered.add(Disc{.body = body, .radius = 0.1, .filter = ground_only});
+  }
+  EXPECT_TRUE(filtered.check().empty());
 }
 
 TEST(SystemCheck, PlacesKeptInVain) {
