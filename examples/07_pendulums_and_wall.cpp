@@ -36,8 +36,8 @@ constexpr double end = 6.0;                 // [s]
 void run(const std::string& title, int links, const std::filesystem::path& folder, const std::string& file) {
   System system;
   system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.point = {wall, 0.0}, .normal = {1.0, 0.0}},
-             Surface{.friction = 0.2, .normal_restitution = 0.5}, "wall");
+  system.set_default_law(Surface{.friction = 0.2, .normal_restitution = 0.5});
+  system.add(HalfPlane{.point = {wall, 0.0}, .normal = {1.0, 0.0}}, "wall");
   std::vector<BodyId> rods;
   for (int i = 0; i < links; ++i) {
     const BodyId body =

@@ -43,7 +43,8 @@ int main(int count, char** arguments) try {
 
   System system;
   system.add(Gravity{{0.0, -g}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 2.0, .normal_restitution = 0.0}, "floor");
+  system.set_default_law(Surface{.friction = 2.0, .normal_restitution = 0.0});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, "floor");
   const double c = std::cos(tilt), s = std::sin(tilt);
   const BodyId block = system.add(
       RigidBody{

@@ -31,11 +31,10 @@ inline constexpr double pair_stiffness = 1000.0;  ///< [N/m]
 inline void add_plane(carom::System& system, const Incline& incline) {
   using namespace carom::planar;
   system.add(Gravity{{0.0, -gravity}});
-  system.add(HalfPlane{.point = {0.0, 0.0}, .normal = carom::planar::incline(incline.slope)},
-             carom::Surface{.friction = incline.friction,
-                            .normal_restitution = incline.normal_restitution,
-                            .tangential_restitution = incline.tangential_restitution},
-             "plane");
+  system.set_default_law(carom::Surface{.friction = incline.friction,
+                                        .normal_restitution = incline.normal_restitution,
+                                        .tangential_restitution = incline.tangential_restitution});
+  system.add(HalfPlane{.point = {0.0, 0.0}, .normal = carom::planar::incline(incline.slope)}, "plane");
 }
 
 /// The bar: a rigid body named "bar" with contact at its two ends (feature 0: lower at the start).

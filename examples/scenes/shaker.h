@@ -51,11 +51,9 @@ inline carom::BodyId add_shaker(carom::System& system, const Shaker& shaker) {
       .displacement = [=](double t) { return carom::Vec<2>(shaker_displacement(shaker, t) * tangent); },
       .velocity = [=](double t) { return carom::Vec<2>(shaker_speed(shaker, t) * tangent); },
       .acceleration = [=](double t) { return carom::Vec<2>(shaker_acceleration(shaker, t) * tangent); }};
-  system.add(
-      HalfPlane{.point = {0.0, 0.0}, .normal = normal, .motion = motion},
-      carom::Surface{
-          .friction = shaker.friction, .normal_restitution = 0.0, .static_friction = shaker.static_friction},
-      "plane");
+  system.set_default_law(carom::Surface{
+      .friction = shaker.friction, .normal_restitution = 0.0, .static_friction = shaker.static_friction});
+  system.add(HalfPlane{.point = {0.0, 0.0}, .normal = normal, .motion = motion}, "plane");
   const double a = block_half_width, b = block_half_height;
   const carom::BodyId block = system.add(
       RigidBody{.mass = box(block_mass, 2.0 * a, 2.0 * b), .position = b * normal, .angle = shaker.slope},

@@ -88,11 +88,8 @@ def block_on_a_moving_plane(motion: PrescribedMotion) -> System:
     """The plane with its motion, and the block, which lies on two corners."""
     system = System()
     system.add(Gravity((0.0, -9.81)))
-    system.add(
-        HalfPlane(normal=NORMAL, motion=motion),
-        Surface(friction=0.3, normal_restitution=0.0, static_friction=0.4),
-        "plane",
-    )
+    system.set_default_law(Surface(friction=0.3, normal_restitution=0.0, static_friction=0.4))
+    system.add(HalfPlane(normal=NORMAL, motion=motion), "plane")
     mass = box(2.0, 2.0 * WIDTH, 2.0 * HEIGHT)
     block = system.add(RigidBody(mass=mass, position=HEIGHT * NORMAL, angle=SLOPE), "block")
     corners = [(-WIDTH, -HEIGHT), (WIDTH, -HEIGHT), (WIDTH, HEIGHT), (-WIDTH, HEIGHT)]

@@ -26,11 +26,8 @@ def pendulum(links: int) -> tuple[System, list[BodyId]]:
     """Rods pinned to each other and to the origin, released level, beside a wall."""
     system = System()
     system.add(Gravity((0.0, -9.81)))
-    system.add(
-        HalfPlane(point=(WALL, 0.0), normal=(1.0, 0.0)),
-        Surface(friction=0.2, normal_restitution=0.5),
-        "wall",
-    )
+    system.set_default_law(Surface(friction=0.2, normal_restitution=0.5))
+    system.add(HalfPlane(point=(WALL, 0.0), normal=(1.0, 0.0)), "wall")
     rods: list[BodyId] = []
     for i in range(links):
         body = system.add(RigidBody(mass=rod(MASS, LENGTH), position=((i + 0.5) * LENGTH, 0.0)))

@@ -27,7 +27,8 @@ END = 12.0  # [s]
 def rocking_block() -> System:
     system = System()
     system.add(Gravity((0.0, -G)))
-    system.add(HalfPlane(normal=(0.0, 1.0)), Surface(friction=2.0, normal_restitution=0.0), "floor")
+    system.set_default_law(Surface(friction=2.0, normal_restitution=0.0))
+    system.add(HalfPlane(normal=(0.0, 1.0)), "floor")
     c, s = math.cos(TILT), math.sin(TILT)
     mass = box(1.0, 2.0 * B, 2.0 * H)
     block = system.add(RigidBody(mass=mass, position=(c * B - s * H, s * B + c * H), angle=TILT), "block")

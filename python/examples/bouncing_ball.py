@@ -10,7 +10,8 @@ END = 2.0  # [s]
 def bouncing_ball() -> System:
     system = System()
     system.add(Gravity((0.0, -9.81)))
-    system.add(HalfPlane(normal=(0.0, 1.0)), Surface(friction=0.5, normal_restitution=0.6), "floor")
+    system.set_default_law(Surface(friction=0.5, normal_restitution=0.6))
+    system.add(HalfPlane(normal=(0.0, 1.0)), "floor")
     system.add(Particle(mass=1.0, position=(0.0, 1.0)), name="ball")
     return system
 

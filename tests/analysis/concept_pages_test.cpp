@@ -86,9 +86,10 @@ void cut_the_rope(Simulation& simulation) {
 
 System strikes_at_its_corner(double normal_restitution, double tangential_restitution) {
   System system;
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 1.0,
-                                                      .normal_restitution = normal_restitution,
-                                                      .tangential_restitution = tangential_restitution});
+  system.set_default_law(Surface{.friction = 1.0,
+                                 .normal_restitution = normal_restitution,
+                                 .tangential_restitution = tangential_restitution});
+  system.add(HalfPlane{.normal = {0.0, 1.0}});
   const BodyId body = system.add(
       RigidBody{.mass = {.mass = 1.0, .inertia = 1.0}, .position = {1.0, 1.0}, .velocity = {1.0, -2.0}});
   system.add(Point{.body = body, .position = {-1.0, -1.0}}, "corner");
@@ -171,7 +172,8 @@ TEST(ModellingPage, TheBarRestsOnTwoSteps) {
 TEST(ModellingPage, TheHammerIsWhereItWasDescribed) {
   System system;
   system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.3}, "floor");
+  system.set_default_law(Surface{.friction = 0.3, .normal_restitution = 0.3});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, "floor");
   const BodyId hammer = add_hammer(system, {0.0, 1.0});
   system.add(Cable{.from = {ground, {0.0, 3.0}}, .to = hammer, .stiffness = 1e3, .free_length = 1.9}, "rope");
   Simulation simulation(system, TimeStepping{});
@@ -221,7 +223,8 @@ TEST(ContactLawPage, UnequalCoefficientsGainEnergyAsItSays) {
 TEST(ContactLawPage, ABlockThatFallsFlatRisesFlat) {
   System system;
   system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.3, .normal_restitution = 0.5}, "floor");
+  system.set_default_law(Surface{.friction = 0.3, .normal_restitution = 0.5});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, "floor");
   const BodyId block = system.add(RigidBody{.mass = box(1.0, 0.4, 0.2), .position = {0.0, 0.2}}, "block");
   system.add(Segment{.body = block, .from = {-0.2, -0.1}, .to = {0.2, -0.1}});
   Simulation simulation(system, EventDriven{});

@@ -22,7 +22,8 @@ namespace {
 System floor_with_gravity() {
   System system;
   system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.5, .normal_restitution = 0.6}, "floor");
+  system.set_default_law(Surface{.friction = 0.5, .normal_restitution = 0.6});
+  system.add(HalfPlane{.normal = {0.0, 1.0}}, "floor");
   return system;
 }
 
@@ -62,8 +63,8 @@ constexpr double slope = 0.3;  // [rad]
 System block_on_incline() {
   System system;
   system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.normal = incline(slope)}, Surface{.friction = 0.2, .normal_restitution = 0.0},
-             "incline");
+  system.set_default_law(Surface{.friction = 0.2, .normal_restitution = 0.0});
+  system.add(HalfPlane{.normal = incline(slope)}, "incline");
   const BodyId block = system.add(
       RigidBody{.mass = box(2.0, 0.4, 0.2), .position = 0.1 * incline(slope), .angle = slope}, "block");
   system.add(Polygon{.body = block, .vertices = {{-0.2, -0.1}, {0.2, -0.1}, {0.2, 0.1}, {-0.2, 0.1}}},
@@ -136,8 +137,8 @@ System slider_crank() {
   system.add(Prismatic{.from = ground, .to = slider, .axis = {1.0, 0.0}}, "guide");
   system.keep_place(crank);
 
-  system.add(HalfPlane{.point = {0.8, 0.0}, .normal = {-1.0, 0.0}},
-             Surface{.friction = 0.0, .normal_restitution = 0.7}, "wall");
+  system.set_default_law(Surface{.friction = 0.0, .normal_restitution = 0.7});
+  system.add(HalfPlane{.point = {0.8, 0.0}, .normal = {-1.0, 0.0}}, "wall");
   system.add(Point{.body = slider, .position = {0.1, 0.0}}, "head");
   system.add(JointFriction{.joint = axle, .bound = 0.3}, "bearing");  // [N m]
   return system;

@@ -22,8 +22,8 @@ using namespace carom::planar;
 System bouncing_bar() {
   System system;
   system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.normal = incline(0.1)},
-             Surface{.friction = 0.1, .normal_restitution = 0.7, .tangential_restitution = 0.7}, "plane");
+  system.set_default_law(Surface{.friction = 0.1, .normal_restitution = 0.7, .tangential_restitution = 0.7});
+  system.add(HalfPlane{.normal = incline(0.1)}, "plane");
   const BodyId bar = system.add(
       RigidBody{.mass = rod(2.0, 2.0), .position = {0.0, 2.0}, .angle = 0.3, .velocity = {1.0, 0.0}}, "bar");
   system.add(Segment{.body = bar, .from = {0.0, -1.0}, .to = {0.0, 1.0}}, "bar");
@@ -142,7 +142,8 @@ TEST(MethodPage, CaptureSpeedDoesNotChangeWhereSlidingLeads) {
   const auto place = [](double capture_speed) {
     System system;
     system.add(Gravity{{0.0, -9.81}});
-    system.add(HalfPlane{.normal = {0.0, 1.0}}, Surface{.friction = 0.02, .normal_restitution = 0.5});
+    system.set_default_law(Surface{.friction = 0.02, .normal_restitution = 0.5});
+    system.add(HalfPlane{.normal = {0.0, 1.0}});
     const BodyId ball =
         system.add(RigidBody{.mass = disc(1.0, 0.1), .position = {0.0, 0.2}, .velocity = {3.0, 0.0}});
     system.add(Disc{.body = ball, .radius = 0.1});

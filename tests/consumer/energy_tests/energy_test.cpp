@@ -11,9 +11,9 @@ using namespace carom::energy_test;
 EnergyTrace hop(double friction) {
   System system;
   system.add(Gravity{{0.0, -9.81}});
-  system.add(HalfPlane{.point = {0.0, 0.0}, .normal = {0.0, 1.0}},
-             Surface{.friction = friction, .normal_restitution = 0.5, .tangential_restitution = 0.5},
-             "floor");
+  system.set_default_law(
+      Surface{.friction = friction, .normal_restitution = 0.5, .tangential_restitution = 0.5});
+  system.add(HalfPlane{.point = {0.0, 0.0}, .normal = {0.0, 1.0}}, "floor");
   const BodyId foot =
       system.add(Particle{.mass = 1.0, .position = {0.0, 0.5}, .velocity = {2.0, 0.0}}, "foot");
   const BodyId head =
