@@ -15,15 +15,17 @@
 namespace carom {
 
 /// An end: a body (its centre of mass), or a body and a point in its frame [m]. On `ground`
-/// the point is in the fixed frame.
+/// the point is in the fixed frame; an end on `ground` without a point is at the origin, of a joint where its
+/// other end is (joints/joint_ends.h).
 template <int D>
 struct End {
   End() = default;
   End(BodyId on) : body(on) {}  // NOLINT(google-explicit-constructor): a body is an end
-  End(BodyId on, const Vec<D>& at) : body(on), point(at) {}
+  End(BodyId on, const Vec<D>& at) : body(on), point(at), has_point(true) {}
 
   BodyId body;                    ///< invalid until given
   Vec<D> point = filled<D>(0.0);  ///< in the body's frame, from its centre of mass [m]
+  bool has_point = false;         ///< the point was given, and is not only where an end is by default
 };
 
 /// Demands a valid end: a body of this system (or ground), a finite point, and away from the centre of mass

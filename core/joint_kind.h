@@ -12,6 +12,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -101,6 +102,12 @@ struct JointReaction {
   double moment = 0.0;            ///< on `to`, about its end, counter-clockwise [N m], or its impulse [N m s]
 };
 
+/// Points of the two bodies of a joint, in the fixed frame [m].
+struct JointPlaces {
+  std::array<double, 3> from{};  ///< of the end on `from`
+  std::array<double, 3> to{};    ///< of the end on `to`
+};
+
 /// All joints of one kind.
 class CAROM_API JointKind {
 public:
@@ -169,6 +176,10 @@ public:
   /// Load of the multipliers of the rows of a joint on its body `to`; for dry friction, that of the friction.
   [[nodiscard]] virtual JointReaction reaction(const JointView& at, Index joint,
                                                const double* multipliers) const = 0;
+  /// Points of the bodies that a joint binds to each other; none if it binds no points, as a driver.
+  [[nodiscard]] virtual std::optional<JointPlaces> places(const JointView& /*at*/, Index /*joint*/) const {
+    return std::nullopt;
+  }
   /// Adds all data that distinguish the joints of this kind (except functions).
   virtual void fingerprint(Fingerprint& print) const = 0;
 };

@@ -29,6 +29,7 @@ struct System::Stored {
   std::map<Role, std::map<std::string, Index, std::less<>>> serials_by_name;  ///< of parts that are there
   SurfaceTable surfaces;                                                      ///< laws of contact
   std::set<Index> kept;                                       ///< bodies that stay where they are
+  bool closes_joints = false;                                 ///< bodies are moved however far
   std::map<std::pair<Index, Index>, bool> contact_decisions;  ///< of two bodies, the lesser first
   std::map<Index, BodyId> former_carriers;                    ///< bodies of removed shapes
 

@@ -238,6 +238,10 @@ bool System::keeps_place(BodyId body) const {
   return stored().kept.contains(body.serial);
 }
 
+void System::close_joints(bool however_far) { stored().closes_joints = however_far; }
+
+bool System::closes_joints() const { return stored().closes_joints; }
+
 std::pair<Index, Index> System::two_bodies(BodyId a, BodyId b) const {
   const PartCheck check("contact of two bodies", *this);
   for (const BodyId body : {a, b}) check.body(body, "body", false);

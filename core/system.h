@@ -73,8 +73,14 @@ public:
   /// Excludes a body from the projection onto the joints at the start of a run: it keeps its described
   /// position and velocity, and others are moved. Throws ModelError for a body that is not of this system.
   void keep_place(BodyId body, bool keep = true);
-  /// True if it is excluded. Throws ModelError likewise.
+  /// True if a body is excluded from the projection onto the joints. Throws ModelError for a body that is not
+  /// of this system.
   [[nodiscard]] bool keeps_place(BodyId body) const;
+  /// Lets the projection onto the joints at the start of a run move bodies however far. Without this a
+  /// Simulation refuses a joint that is drawn open by more than a tenth of the size of its bodies.
+  void close_joints(bool however_far = true);
+  /// True if the projection onto the joints may move bodies however far.
+  [[nodiscard]] bool closes_joints() const;
 
   /// Decides whether shapes of two bodies may touch, where their filters let them. Undecided, they may unless
   /// a joint binds both bodies. Throws ModelError for a body that is not of this system, and for the same

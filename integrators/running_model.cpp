@@ -68,6 +68,7 @@ void ModeMachines::advance_unseen(const Run& run, double limit) {
 
 RunningModel::Prepared RunningModel::prepare(State& start) const {
   const JointClosure closed = close_joints(assembly, start);
+  demand_roughly_closed(assembly.system(), closed.open);
   double shift = closed.shift;
   if (machines.stepper) {
     const TimeStepper& stepper = *machines.stepper;

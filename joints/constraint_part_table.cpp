@@ -302,6 +302,15 @@ void ConstraintPartTable::evaluate_rows(const JointView& at, Range joints, Index
   }
 }
 
+JointPlaces ConstraintPartTable::places(const JointView& at, Index joint) const {
+  const auto& [from, to] = places_[joint];
+  const Vec<2>& from_point = from_point_[joint];
+  const Vec<2>& to_point = to_point_[joint];
+  const Vec<2> a = from.position(at, from_point, from.lever(at, from_point));
+  const Vec<2> b = to.position(at, to_point, to.lever(at, to_point));
+  return {.from = {a[0], a[1], 0.0}, .to = {b[0], b[1], 0.0}};
+}
+
 JointReaction ConstraintPartTable::reaction(const JointView& at, Index joint, Index rows,
                                             const double* multipliers) const {
   JointReaction reaction;

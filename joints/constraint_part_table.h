@@ -45,6 +45,8 @@ public:
   void evaluate(const JointView& at, Range joints, Index rows, JointNumbers out) const;
   /// Writes the derivatives of one row of a joint.
   void derivatives(const JointView& at, Index joint, Index which, JointRowDerivative& out) const;
+  /// Points of the ends of a joint.
+  [[nodiscard]] JointPlaces places(const JointView& at, Index joint) const;
   /// Load of the multipliers of the first `rows` rows on `to`.
   [[nodiscard]] JointReaction reaction(const JointView& at, Index joint, Index rows,
                                        const double* multipliers) const;

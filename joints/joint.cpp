@@ -52,6 +52,11 @@ void CompositeJoints::coordinate_pattern(Index joint, JointRow& out) const {
 JointReaction CompositeJoints::reaction(const JointView& at, Index joint, const double* multipliers) const {
   return table_->reaction(at, joint, row_count_, multipliers);
 }
+std::optional<JointPlaces> CompositeJoints::places(const JointView& at, Index joint) const {
+  // Angles alone have no points.
+  if (table_->constraint(joint, 0).form == ConstraintPart::Form::angles) return std::nullopt;
+  return table_->places(at, joint);
+}
 void CompositeJoints::fingerprint(Fingerprint& print) const { table_->fingerprint(print); }
 
 }  // namespace carom::planar

@@ -18,6 +18,7 @@
 #include <carom/joints/joint_ends.h>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,7 @@ public:
   void coordinate_pattern(Index joint, JointRow& out) const override;
   [[nodiscard]] JointReaction reaction(const JointView& at, Index joint,
                                        const double* multipliers) const override;
+  [[nodiscard]] std::optional<JointPlaces> places(const JointView& at, Index joint) const override;
   void fingerprint(Fingerprint& print) const override;
 
 protected:

@@ -40,8 +40,9 @@ ConstraintPart angle_constraint(BodyId from, BodyId to, double offset) {
 
 std::vector<ConstraintPart> Revolute::constraints(const PartCheck& check) const {
   check_joint_ends(check, from, to);
+  const JointEnds ends = ends_of_point(check, from, to);
   if (std::isinf(zero_angle)) check.finite(zero_angle, "zero_angle", "rad");
-  return point_constraints(from, to);
+  return point_constraints(ends.from, ends.to);
 }
 
 ConstraintPart Revolute::coordinate(const PartCheck& check) const {
@@ -51,9 +52,10 @@ ConstraintPart Revolute::coordinate(const PartCheck& check) const {
 
 std::vector<ConstraintPart> Weld::constraints(const PartCheck& check) const {
   check_joint_ends(check, from, to);
+  const JointEnds ends = ends_of_point(check, from, to);
   check_turning_end(check, from.body, "from");
   check_turning_end(check, to.body, "to");
-  std::vector<ConstraintPart> constraints = point_constraints(from, to);
+  std::vector<ConstraintPart> constraints = point_constraints(ends.from, ends.to);
   constraints.push_back(
       angle_constraint(from.body, to.body, relative_angle(check, angle, from.body, to.body, "angle")));
   return constraints;

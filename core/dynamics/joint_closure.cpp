@@ -190,14 +190,15 @@ void close_gaps(const Assembly& assembly, Index component, JointConstraints& joi
   double best = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {
     evaluate_positions(assembly, component, state.view(), work.evaluation);
-    joints.update_and_factor({state.view(), work.evaluation.rotation.data()});
+    const JointView at{state.view(), work.evaluation.rotation.data()};
+    joints.update_and_factor(at);
     for (std::size_t i = 0; i < off.size(); ++i) off[i] = joints.gaps()[i];
     const std::size_t worst = worst_row(off);
     const double left = std::abs(off[worst]), size = largest(state.q, range.q, 1.0);
     if (left <= rounding * size) break;
     const bool stalls = !(left < 0.5 * best) && left <= accepted * size;
     if (stalls) break;
-    if (step == 0) list_open_joints(assembly, component, joints, state, work.lengths, open);
+    if (step == 0) list_open_joints(assembly, component, joints, state, at, work.lengths, open);
     if (step == most_steps || !std::isfinite(left)) {
       refuse(assembly, joints, worst, off[worst], "cannot be closed", "m or rad");
     }

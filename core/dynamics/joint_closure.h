@@ -6,6 +6,7 @@
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 
+#include <string>
 #include <vector>
 
 namespace carom {
@@ -17,6 +18,7 @@ struct OpenJoint {
   JointId joint;       ///< identity
   double gap = 0.0;    ///< of its row that is furthest off [m, rad]
   bool turns = false;  ///< it is an angle
+  std::string far;     ///< of a joint between points that is far open: what is refused and allowed
 };
 
 /// Corrections that closed the joints.

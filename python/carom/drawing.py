@@ -34,6 +34,7 @@ _SPRINGS = {
     "Rod": "rod",
 }
 _JOINTS = {"Revolute": "pin", "Weld": "weld", "Prismatic": "slide", "PointOnLine": "slot", "Rolling": "slot"}
+_BOTH = (("from", "to"), ("to", "from"))
 _ARC = 96  # straight pieces of a full circle
 
 
@@ -65,7 +66,12 @@ class Drawing:
         shaped = {part["fields"]["body"] for part in model["parts"] if part["role"] == "shape"}
         rigid = {part["serial"] for part in model["parts"] if part["type"] == "RigidBody"}
         self._bare = {self._pose_of_body[serial] for serial in rigid - shaped if serial in self._pose_of_body}
+        self._places_described: dict[Any, tuple[float, float, float]] = {"ground": (0.0, 0.0, 0.0)}
         for part in model["parts"]:
+            if part["role"] == "body":
+                place = part["fields"]["position"]
+                angle = part["fields"].get("angle") or 0.0
+                self._places_described[part["serial"]] = (place[0], place[1], angle)
             self._add(part)
         self._add_centres()
 
@@ -87,23 +93,35 @@ class Drawing:
         elif kind in _SPRINGS:
             self.links.append([_SPRINGS[kind], *self._end(fields["from"]), *self._end(fields["to"])])
         elif kind in _JOINTS:
-            self._add_joint(_JOINTS[kind], fields)
+            from_, to = (self._described(fields[end], fields[other]) for end, other in _BOTH)
+            self._add_joint(_JOINTS[kind], fields, from_, to)
 
-    def _end(self, end: dict[str, Any]) -> list[float]:
+    def _described(self, end: Any, other: Any) -> dict[str, Any]:
+        """An end of a joint with its point: on ground, without one, where the other end is described."""
+        if isinstance(end, dict):
+            return end
+        x, y, angle = self._places_described[other["body"]]
+        cos, sin = math.cos(angle), math.sin(angle)
+        a, b = other["point"][:2]
+        return {"body": end, "point": [x + cos * a - sin * b, y + sin * a + cos * b]}
+
+    def _end(self, end: Any) -> list[float]:
+        if not isinstance(end, dict):
+            return [self._pose_of_body[end], *[0.0] * self.dimension]
         pose = self._pose_of_body[end["body"]]
         point = end["point"][: self.dimension]
         if pose in self._bare and any(point):
             self.struts.append([pose, *point])
         return [pose, *point]
 
-    def _add_joint(self, kind: str, fields: dict[str, Any]) -> None:
+    def _add_joint(self, kind: str, fields: dict[str, Any], from_: Any, to: Any) -> None:
         if kind in ("slide", "slot"):
             axis = fields.get("axis") or [fields["normal"][1], -fields["normal"][0]]
             length = math.hypot(*axis)
-            self.joints.append(["axis", *self._end(fields["from"]), [axis[0] / length, axis[1] / length]])
+            self.joints.append(["axis", *self._end(from_), [axis[0] / length, axis[1] / length]])
         else:
-            self._end(fields["from"])
-        self.joints.append([kind, *self._end(fields["to"]), None])
+            self._end(from_)
+        self.joints.append([kind, *self._end(to), None])
 
     def _add_shape(self, kind: str, fields: dict[str, Any]) -> None:
         pose = self._pose_of_body[fields["body"]]

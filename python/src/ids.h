@@ -54,7 +54,8 @@ template <int D>
 struct Convert<carom::End<D>> {
   static TypeNames names() {
     return {"carom._core.BodyId | tuple[carom._core.BodyId, numpy.typing.ArrayLike]",
-            "tuple[carom._core.BodyId, numpy.typing.NDArray[numpy.float64]]", "end" + std::to_string(D)};
+            "carom._core.BodyId | tuple[carom._core.BodyId, numpy.typing.NDArray[numpy.float64]]",
+            "end" + std::to_string(D)};
   }
   static void load(nb::handle from, carom::End<D>& to, std::string_view where) {
     constexpr const char* expected = "a body, or a body and a point (body, (x, y))";
@@ -70,10 +71,13 @@ struct Convert<carom::End<D>> {
         if (i == 1) Convert<carom::Vec<D>>::load(item, read.point, std::string(where) + "[1]");
       });
       if (found != 2) refuse(where, expected, from);
+      read.has_point = true;
     }
     to = read;
   }
   static nb::object cast(const carom::End<D>& value) {
+    // Ground without a point is not ground at the origin.
+    if (value.body == carom::ground && !value.has_point) return Convert<carom::BodyId>::cast(value.body);
     return nb::make_tuple(Convert<carom::BodyId>::cast(value.body),
                           Convert<carom::Vec<D>>::cast(value.point));
   }

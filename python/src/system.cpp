@@ -272,6 +272,12 @@ void bind_laws_of(nb::class_<Model>& type) {
           "keeps_place", [](Model& self, BodyId body) { return self.get().keeps_place(body); },
           nb::arg("body"), doc("System.keeps_place"))
       .def(
+          "close_joints", [](Model& self, bool however_far) { self.get().close_joints(however_far); },
+          nb::arg("however_far") = true, doc("System.close_joints"))
+      .def(
+          "closes_joints", [](Model& self) { return self.get().closes_joints(); },
+          doc("System.closes_joints"))
+      .def(
           "allow_contact",
           [](Model& self, BodyId a, BodyId b, std::optional<bool> allowed) {
             self.get().allow_contact(a, b, allowed);

@@ -18,7 +18,7 @@ VERSION = 1
 MODES = {"time-stepping": "TimeStepping", "event-driven": "EventDriven"}
 SPACES = ("planar", "spatial")
 _FIRST = ("carom", "space", "materials", "laws", "default_law")
-KEYS = (*_FIRST, *SECTIONS.values(), "contacts", "keep_place", "simulation")
+KEYS = (*_FIRST, *SECTIONS.values(), "contacts", "keep_place", "close_joints", "simulation")
 
 
 Mode = Union[_core.TimeStepping, _core.EventDriven]
@@ -97,6 +97,8 @@ def _write_contacts(system: _core.System, names: Names) -> Data:
     kept = [body for body in system.bodies() if system.keeps_place(body)]
     if kept:
         data["keep_place"] = [names.reference("bodies", body, ("keep_place",)) for body in kept]
+    if system.closes_joints():
+        data["close_joints"] = True
     return data
 
 
@@ -234,6 +236,8 @@ def _read_contacts(data: Data, system: _core.System, names: Names) -> None:
     for i, reference in enumerate(_list(data, "keep_place")):
         body = names.find("bodies", reference, ("keep_place", i))
         _attempt(("keep_place", i), system.keep_place, body)
+    if "close_joints" in data:
+        system.close_joints(Boolean().read(data["close_joints"], ("close_joints",), names))
 
 
 def _read_simulation(value: Any, names: Names) -> tuple[Mode, Optional[float]]:

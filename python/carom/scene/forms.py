@@ -156,7 +156,8 @@ class Reference(Form):
 
 
 class End(Form):
-    """A body, or a body with a point in its frame: {"body": "rod", "point": [0.5, 0]}."""
+    """A body, or a body with a point in its frame: {"body": "rod", "point": [0.5, 0]}. On ground without a
+    point it is at the origin, of a joint where its other end is."""
 
     def __init__(self, dimension: int) -> None:
         self._body, self._point = Reference("BodyId"), List(Number(), dimension)
@@ -178,9 +179,11 @@ class End(Form):
         return body, self._point.read(value["point"], (*path, "point"), names)
 
     def write(self, value: Any, path: Path, names: Names) -> Any:
+        if not isinstance(value, tuple):
+            return self._body.write(value, path, names)
         body, point = value
         reference = self._body.write(body, path, names)
-        if all(x == 0.0 and math.copysign(1.0, x) > 0.0 for x in point):
+        if body != _core.ground and all(x == 0.0 and math.copysign(1.0, x) > 0.0 for x in point):
             return reference
         return {"body": reference, "point": self._point.write(point, path, names)}
 

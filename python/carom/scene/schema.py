@@ -85,6 +85,7 @@ def schema() -> Schema:
             ),
         },
         "keep_place": {"type": "array", "items": body},
+        "close_joints": {"type": "boolean"},
         "simulation": _simulation(),
         **{section: {"type": "array"} for section in SECTIONS.values()},
     }
