@@ -17,7 +17,10 @@ void GroupGuards::add(const Assembly& assembly, Index component) {
     const Index each = elements.guard_size();
     if (acting.empty() || each == 0) continue;
     const std::size_t count = static_cast<std::size_t>(each) * acting.size();
-    if (!list_) list_ = std::make_unique<List>();
+    if (!list_) {
+      list_ = std::make_unique<List>();
+      list_->assembly = &assembly;
+    }
     list_->runs.push_back({component, kind, acting, list_->elements.size(), count});
     for (Index element = acting.begin; element < acting.end; ++element) {
       list_->elements.insert(list_->elements.end(), each, assembly.element_id(kind, element));
@@ -30,12 +33,14 @@ void GroupGuards::add(const Assembly& assembly, Index component) {
   }
 }
 
-void GroupGuards::read(EvaluationContext at, const double* acceleration, std::vector<GuardMotion>& out) {
+void GroupGuards::read(const StateView& state, const Evaluation& evaluation, const double* acceleration,
+                       std::vector<GuardMotion>& out) {
   out.resize(count());
   if (!list_) return;
+  const Assembly& assembly = *list_->assembly;
   for (const Run& run : list_->runs) {
-    at.component = run.component;
-    const ForceKind& kind = *at.assembly.force_kinds()[run.kind];
+    const EvaluationContext at{assembly, state, evaluation, run.component};
+    const ForceKind& kind = *assembly.force_kinds()[run.kind];
     if (kind.has_guard_motion()) {
       kind.guard_motion(at, acceleration, run.elements, out.data() + run.first);
       continue;

@@ -30,9 +30,11 @@ public:
   [[nodiscard]] bool has_motion(std::size_t guard) const { return list_->has_motion[guard] != 0; }
   /// True if they are known of all guards.
   [[nodiscard]] bool all_have_motion() const { return !list_ || list_->all_have_motion; }
-  /// Writes all. \param at the evaluation, of any component \param acceleration of all velocity coordinates,
-  /// reactions included
-  void read(EvaluationContext at, const double* acceleration, std::vector<GuardMotion>& out);
+  /// Writes all guards, those of each component in a context of that component: an element sees its own
+  /// bodies only. \param evaluation of the state, with the positions of all components up to date
+  /// \param acceleration of all velocity coordinates, reactions included
+  void read(const StateView& state, const Evaluation& evaluation, const double* acceleration,
+            std::vector<GuardMotion>& out);
 
 private:
   void add(const Assembly& assembly, Index component);
@@ -43,6 +45,7 @@ private:
     std::size_t first, count;
   };
   struct List {
+    const Assembly* assembly = nullptr;
     std::vector<Run> runs;
     std::vector<ElementId> elements;
     std::vector<char> has_motion;

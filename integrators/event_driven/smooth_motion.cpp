@@ -154,8 +154,7 @@ void SmoothMotion::jacobian(double time, const double* y, std::vector<RateDeriva
 
 void SmoothMotion::read_guards(const MotionSample& at, std::vector<GuardMotion>& out) {
   if (guards_.count() == 0) return;
-  const Index first = model_.parts().front().component;
-  guards_.read({*model_.assembly, at.view(), at.evaluation, first}, at.acceleration.data(), out);
+  guards_.read(at.view(), at.evaluation, at.acceleration.data(), out);
 }
 
 void SmoothMotion::read_guards(double time, const double* y, const double* acceleration, MotionSample& memory,
