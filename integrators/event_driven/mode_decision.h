@@ -45,6 +45,10 @@ public:
                      std::span<Candidate> candidates);
   /// The last problem and its answer.
   [[nodiscard]] const IslandProblem& problem() const { return problem_; }
+  /// Candidates by constraint of the last problem.
+  [[nodiscard]] std::span<const std::size_t> taking_part() const { return taking_part_; }
+  /// Accelerations of all bodies by the last answer.
+  [[nodiscard]] const double* acceleration() const { return acceleration_.data(); }
 
 private:
   void take_accelerations(const SmoothMotion& motion, const MotionSample& now);

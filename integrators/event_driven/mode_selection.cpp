@@ -5,6 +5,7 @@
 #include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/answering_bodies.h>
+#include <carom/integrators/event_driven/dead_points.h>
 #include <carom/integrators/event_driven/mode_selection.h>
 #include <carom/integrators/run/time_resolution.h>
 
@@ -114,6 +115,8 @@ bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at
   collect_candidates(pairs, at);
   if (memory_->candidates.empty()) return true;
   Decision decision = decide_candidates(pairs, at);
+  if (decision == Decision::made && leave_dead_points(memory_->decision, at, memory_->candidates))
+    decision = decide_candidates(pairs, at);
   if (decision == Decision::impossible || decision == Decision::failed) {
     failure_->demand_finite_loads(at.now);
     // Where forces are neither found nor excluded, the limit of an impact may find either: closed contacts in
