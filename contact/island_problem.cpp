@@ -11,7 +11,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/contact/island_rows.h>
 #include <carom/contact/solvers/planar_certificate.h>
-#include <carom/core/errors.h>
+#include <carom/core/run_error.h>
 
 #include <algorithm>
 #include <array>
@@ -42,11 +42,11 @@ void demand_room(std::size_t constraints, int rows) {
   if (rows <= most_dense_rows) return;
   constexpr double gigabyte = 1e9;
   const double size = static_cast<double>(sizeof(double)) * rows * rows / gigabyte;
-  throw SolverError("more contacts than memory allows: " + std::to_string(constraints) +
-                        " constraints of one contact problem, whose " + std::to_string(rows) +
-                        " rows answer to each other (W in full would take " + to_text(size) +
-                        " GB); allowed: at most " + std::to_string(most_dense_rows) + " rows",
-                    {});
+  throw RunError("more contacts than memory allows: " + std::to_string(constraints) +
+                     " constraints of one contact problem, whose " + std::to_string(rows) +
+                     " rows answer to each other (W in full would take " + to_text(size) +
+                     " GB); allowed: at most " + std::to_string(most_dense_rows) + " rows",
+                 {});
 }
 
 /// Whether sweeps are to solve constraints of bodies that answer together: very many contacts. Few of them

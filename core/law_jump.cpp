@@ -1,6 +1,6 @@
-#include <carom/core/errors.h>
 #include <carom/core/law_jump.h>
 #include <carom/core/part_check.h>
+#include <carom/core/run_error.h>
 
 #include <algorithm>
 #include <cmath>
@@ -226,7 +226,7 @@ void fail_jump(const std::string& part, const std::string& quantity, const char*
       part + ": " + quantity + " jumps at t = " + to_text(jump.time) + " s, by " + to_text(jump.size);
   if (*unit != '\0') message.append(" ").append(unit);
   message += "; allowed: a continuous one (its rate may jump, at times listed in breaks)";
-  throw SolverError(message, std::move(failure));
+  throw RunError(message, std::move(failure));
 }
 
 void fail_rate(const std::string& part, const std::string& rate, const std::string& of, const char* unit,
@@ -238,7 +238,7 @@ void fail_rate(const std::string& part, const std::string& rate, const std::stri
                         of + ", off by " + to_text(found.off);
   if (*unit != '\0') message.append(" ").append(unit);
   message += "; allowed: its rate (it is computed where none is given)";
-  throw SolverError(message, std::move(failure));
+  throw RunError(message, std::move(failure));
 }
 
 std::optional<LawJump> find_jump(FunctionRef<LawPoint(double time)> law, const LawPoint& from,

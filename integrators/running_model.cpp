@@ -2,6 +2,7 @@
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/dynamics/open_joints.h>
 #include <carom/core/part_check.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/event_driven/impact_list.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/running_model.h>
@@ -55,15 +56,28 @@ void ModeMachines::advance(const Run& run, double limit) {
   }
 }
 
-/// Where that fails the motion before is good: the run goes there by intervals, and fails in the last.
 void ModeMachines::advance_unseen(const Run& run, double limit) {
   try {
     run.unlisted = driver->advance(run.state, run.companion, limit, run.report, run.events);
     StepGrid(run.mode).skip_to(run.companion, limit);
+  } catch (const RunError& error) {
+    advance_while_good(run, limit);
+    SolverFailure failure = error.failure();
+    failure.step = std::max(failure.time + failure.step - run.state.time, 0.0);
+    failure.time = run.state.time;
+    throw RunError(error.what(), std::move(failure));
   } catch (...) {
-    if (!(run.state.time < limit)) throw;
-    while (run.state.time < limit) advance(run, limit);
+    advance_while_good(run, limit);
+    throw;
   }
+}
+
+/// After a failure: goes by intervals as far as the motion was good, where somebody who looks would stand.
+/// What failed is not tried again: a function of the user that throws once would be lost.
+void ModeMachines::advance_while_good(const Run& run, double limit) {
+  const double good = driver->good_until();
+  const StepGrid grid(run.mode);
+  while (run.state.time < limit && std::min(grid.next(run.companion), limit) <= good) advance(run, limit);
 }
 
 RunningModel::Prepared RunningModel::prepare(State& start) const {

@@ -39,13 +39,17 @@ struct ModeMachines {
 
   /// One step, to the next time of the grid (StepGrid), or to a time before it [s].
   void advance(const Run& run, double limit);
-  /// In the event-driven mode: to a time at once, without output in between. Impacts are left unlisted.
+  /// In the event-driven mode: to a time at once, without output in between. Impacts are left unlisted. Where
+  /// that fails, the state is that of the last interval before the failure.
   void advance_unseen(const Run& run, double limit);
 
   std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode
   std::unique_ptr<StepController> controller;  ///< likewise
   std::unique_ptr<PartedSteps> parted;         ///< null where no step has to be parted
   std::unique_ptr<EventDriver> driver;         ///< null in time stepping
+
+private:
+  void advance_while_good(const Run& run, double limit);
 };
 
 /// Assembly and machines.

@@ -1,4 +1,5 @@
 #include <carom/core/dynamics/joint_closure.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/progress_bar.h>
@@ -38,12 +39,13 @@ void Simulation::Impl::step(Simulation& simulation, double limit, Stops stops) {
     stop.check();
     const double end = std::min(limit, next_due(companion));
     const Run run{mode, state, companion, report, events, unlisted};
-    if (stops == Stops::where_seen && model->machines.driver && !looked_at()) {
-      model->machines.advance_unseen(run, end);
-      if (report_seen) list_impacts();  // who has it goes on looking
-    } else {
-      model->machines.advance(run, end);
+    const bool is_unseen = stops == Stops::where_seen && model->machines.driver && !looked_at();
+    try {
+      is_unseen ? model->machines.advance_unseen(run, end) : model->machines.advance(run, end);
+    } catch (const RunError& error) {
+      throw SolverError(error);  // if a law runs this simulation, it is no error of the run that asks the law
     }
+    if (is_unseen && report_seen) list_impacts();  // who has it goes on looking
   }
   try {
     write_to_log(told);
@@ -181,6 +183,7 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   RunningModel::Prepared start = edited->prepare(state);
   const double projected = start.projected;
   std::vector<ModelFinding> findings = edited->findings(std::move(start));
+  const StoredEnergies stored = edited->stored_energies(state);
   const auto same = [](const ModelFinding& a, const ModelFinding& b) { return a.text == b.text; };
   self.findings_written = self.findings_written && std::ranges::equal(findings, self.report.findings, same);
   self.report.projected = projected;
@@ -191,7 +194,7 @@ void Simulation::edit(const std::function<void(System&)>& change) {
   auto modes = std::move(self.companion.modes);
   self.forget_history();
   self.companion.modes = std::move(modes);
-  self.book_intervention();
+  self.book_intervention(stored);
 }
 
 void Simulation::set_state(const State& state) {
@@ -203,7 +206,9 @@ void Simulation::set_state(const State& state) {
     throw ModelError("state: model is another one; allowed: a state of this simulation since its last edit");
   }
   State closed = state;
-  self.report.projected = self.model->prepare(closed).projected;
+  const double projected = self.model->prepare(closed).projected;
+  const StoredEnergies stored = self.model->stored_energies(closed);
+  self.report.projected = projected;
   const bool moved_in_time = state.time != self.state.time;
   self.state = std::move(closed);
   if (moved_in_time) {
@@ -211,7 +216,7 @@ void Simulation::set_state(const State& state) {
     restart_grid(self.companion, self.state.time);
   }
   self.forget_history();
-  self.book_intervention();
+  self.book_intervention(stored);
 }
 
 void Simulation::switch_to(Mode mode) {

@@ -32,8 +32,9 @@ struct Simulation::Impl {
     companion.ledger.open(model->stored_energies(state));
   }
 
-  void book_intervention() {
-    const StoredEnergies stored = model->stored_energies(state);
+  /// Books a change of the state from outside. \param stored energies of the new state, asked for before
+  /// anything was changed: potentials of the user may throw
+  void book_intervention(const StoredEnergies& stored) {
     companion.ledger.book(EnergyFlow::intervention, stored.total() - companion.ledger.total(), stored);
   }
   /// Memory of a run from step to step is void after the state was changed from outside.

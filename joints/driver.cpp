@@ -1,3 +1,4 @@
+#include <carom/core/run_error.h>
 #include <carom/core/system.h>
 #include <carom/core/time_course.h>
 #include <carom/joints/driver_kind.h>
@@ -44,9 +45,9 @@ void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const
     const char* const what = !std::isfinite(now.value)  ? "position"
                              : !std::isfinite(now.rate) ? "velocity"
                                                         : "acceleration";
-    throw SolverError(parts_[joint].name + ": " + what + " at t = " + to_text(at.state.time) +
-                          " s is not finite; allowed: a finite number",
-                      std::move(failure));
+    throw RunError(parts_[joint].name + ": " + what + " at t = " + to_text(at.state.time) +
+                       " s is not finite; allowed: a finite number",
+                   std::move(failure));
   }
   out->gap -= now.value;
   out->rate -= now.rate;

@@ -3,6 +3,7 @@
 #include <carom/core/described_sets.h>
 #include <carom/core/law_jump.h>
 #include <carom/core/registry.h>
+#include <carom/core/run_error.h>
 #include <carom/core/system.h>
 
 #include <algorithm>
@@ -44,7 +45,7 @@ GroundMotion GroundShapes::motion(Index shape, double time) const {
   const std::string message = failure.parts.front() + ": " + bad.quantity +
                               " of its motion at t = " + to_text(time) + " s is " + to_text(bad.value) + " " +
                               bad.unit + "; allowed: a finite number";
-  throw SolverError(message, std::move(failure));
+  throw RunError(message, std::move(failure));
 }
 
 void GroundShapes::refuse(Index shape, const Gap& gap, const double* point, double time) const {
@@ -61,7 +62,7 @@ void GroundShapes::refuse(Index shape, const Gap& gap, const double* point, doub
       failure.parts.front() + ": " + (of_normal ? "normal" : "distance") + " at " + list(point) + " m is " +
       (of_normal ? list(gap.normal.data()) + "; allowed: a vector of length 1"
                  : to_text(gap.distance) + " m; allowed: a finite number, or infinity");
-  throw SolverError(message, std::move(failure));
+  throw RunError(message, std::move(failure));
 }
 
 void GroundShapes::place(double time, GroundPlaces& places) const {

@@ -100,7 +100,7 @@ Event EventDetector::search(Flow& flow, double time, std::span<const double> y, 
   for (;;) {
     try {
       flow.advance(std::min(longest, until));
-    } catch (const SolverError& error) {
+    } catch (const RunError& error) {
       if (!finds_unbounded_force(flow.end(), flow.state().data(), UnboundedForces::least_growth))
         failure_->fail_flow(error, *motion_, y.data(), memory_->within);
       return unbounded_at(time, y, error.what());

@@ -1,6 +1,7 @@
 // Problem: clock groups at their own pace, one state for everybody else.
 
 #include <carom/core/dynamics/coupling_rating.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/failure_file.h>
 
@@ -67,10 +68,10 @@ auto EventDriver::within_limit(double time, F&& evaluate) const {
   } catch (const EvaluationLimit::Reached&) {
     SolverFailure failure;
     failure.time = time;
-    throw SolverError("event-driven at t = " + to_text(time) + " s: more than " +
-                          std::to_string(options_.evaluation_limit) +
-                          " evaluations to look at a state (evaluation_limit)",
-                      std::move(failure));
+    throw RunError("event-driven at t = " + to_text(time) + " s: more than " +
+                       std::to_string(options_.evaluation_limit) +
+                       " evaluations to look at a state (evaluation_limit)",
+                   std::move(failure));
   }
 }
 
@@ -98,17 +99,16 @@ void EventDriver::start(const State& state, const Companion& companion) {
 
 std::size_t EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
                                  RecordedEvents& events) {
-  laws_.demand(state.time, target, options_.interval);
-  if (!started_) start(state, companion);
-  advance_groups(target);
-  trial_.time = target;
-  modes_.clear();
-  groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
-  // No event is looked at any more.
-  const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), memory_.instant.now.evaluation);
-  if (!std::isfinite(stored.total())) fail_energy(state.time, target);
-  demand_apart(state.time);
-  balance_.finish();
+  demand_laws(state.time, target);
+  StoredEnergies stored;
+  try {
+    stored = reach(state, companion, target);
+  } catch (...) {
+    // Steps of groups ahead of the state are of no use after an error.
+    started_ = false;
+    memory_.chain.reset_statistics();
+    throw;
+  }
   write_report(state.time, target, report);
   companion.ledger.book(balance_.flows, stored);
   companion.modes.swap(modes_);
@@ -122,27 +122,57 @@ std::size_t EventDriver::advance(State& state, Companion& companion, double targ
   return count;
 }
 
+/// Demands laws of time that do not jump, before anything moves.
+void EventDriver::demand_laws(double from, double to) {
+  try {
+    laws_.demand(from, to, options_.interval);
+  } catch (...) {
+    good_until_ = laws_.good_until();
+    throw;
+  }
+}
+
+/// Moves all groups to a time and writes their state to the trial. Returns its energies.
+StoredEnergies EventDriver::reach(const State& state, const Companion& companion, double target) {
+  good_until_ = state.time;
+  if (!started_) start(state, companion);
+  advance_groups(target);
+  good_until_ = target;
+  trial_.time = target;
+  modes_.clear();
+  groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
+  // No event is looked at any more.
+  const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), memory_.instant.now.evaluation);
+  if (!std::isfinite(stored.total())) fail_energy(state.time, target);
+  overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, memory_.motion.lengths, state.time);
+  balance_.finish();
+  return stored;
+}
+
 /// Groups that may meet go on together, others each to the end.
 void EventDriver::advance_groups(double to) {
+  const auto advance_one = [&](ClockGroup& group) {
+    try {
+      group.advance(to, balance_);
+    } catch (...) {
+      good_until_ = group.now();
+      throw;
+    }
+  };
   balance_.clear();
   try {
     if (meetings_) {
-      meetings_->advance(to, balance_);
+      meetings_->advance(to, balance_, good_until_);
     } else {
-      groups_.for_each([&](ClockGroup& group) { group.advance(to, balance_); });
+      groups_.for_each(advance_one);
     }
-  } catch (const SolverError& error) {
-    started_ = false;
-    memory_.chain.reset_statistics();
+  } catch (const RunError& error) {
     // Steps go ahead of `to`, where laws may jump that were not looked at yet: that is the cause then.
     laws_.demand(to, to + options_.longest_step, options_.interval);
     if (std::string_view(error.what()).starts_with("event-driven")) throw;  // it says where
     SolverFailure failure = error.failure();
     failure.time = trial_.time;
-    throw SolverError("event-driven at t = " + to_text(trial_.time) + " s: " + error.what(), failure);
-  } catch (...) {
-    abandon();
-    throw;
+    throw RunError("event-driven at t = " + to_text(trial_.time) + " s: " + error.what(), failure);
   }
 }
 
@@ -163,23 +193,7 @@ void EventDriver::write_report(double from, double to, StepReport& out) const {
   out.projected = balance_.shift;
 }
 
-void EventDriver::demand_apart(double from) {
-  try {
-    overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, memory_.motion.lengths, from);
-  } catch (...) {
-    abandon();
-    throw;
-  }
-}
-
-/// Steps of groups ahead of the state are of no use after an error.
-void EventDriver::abandon() {
-  started_ = false;
-  memory_.chain.reset_statistics();
-}
-
 void EventDriver::fail_energy(double from, double to) {
-  abandon();
   SolverFailure failure;
   failure.time = from;
   failure.step = to - from;
@@ -192,7 +206,7 @@ void EventDriver::fail_energy(double from, double to) {
   }
   message += failure.parts.empty() ? "an energy is too large to be counted"
                                    : "the potential of " + failure.parts.front() + " is not finite";
-  throw SolverError(message, std::move(failure));
+  throw RunError(message, std::move(failure));
 }
 
 JointReaction EventDriver::reaction(const State& state, const Companion& companion, JointId joint) {

@@ -43,6 +43,9 @@ public:
   /// (list_impacts()).
   std::size_t advance(State& state, Companion& companion, double target, StepReport& report,
                       RecordedEvents& events);
+  /// Where the last advance() failed, the time up to which the motion was decided before, not before the
+  /// state's [s]. Advances to earlier times succeed, but for what their own ends bring to light.
+  [[nodiscard]] double good_until() const { return good_until_; }
   /// Reaction of a joint at a state last advanced to, or changed to since.
   [[nodiscard]] JointReaction reaction(const State& state, const Companion& companion, JointId joint);
   /// Forces of closed contacts, likewise, in the order of their keys.
@@ -60,10 +63,10 @@ private:
   template <class F>
   auto within_limit(double time, F&& evaluate) const;
   void count(Companion& companion);
+  void demand_laws(double from, double to);
+  [[nodiscard]] StoredEnergies reach(const State& state, const Companion& companion, double target);
   void advance_groups(double to);
   void write_report(double from, double to, StepReport& out) const;
-  void demand_apart(double from);
-  void abandon();
   [[noreturn]] void fail_energy(double from, double to);
 
   const Assembly* assembly_;
@@ -78,6 +81,7 @@ private:
   ContactModes modes_;
   EventBalance balance_;
   FlowCounts counted_;  // of the flows, in the statistics so far
+  double good_until_ = 0.0;
   bool started_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/coupling_rating.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/run/failure_file.h>
 
@@ -59,7 +60,7 @@ void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
     failure.problem = std::make_shared<const ContactProblem>(problem->problem());
     message += write_failure(model_->options->failure_directory, failure, message);
   }
-  throw SolverError(message, std::move(failure));
+  throw RunError(message, std::move(failure));
 }
 
 void GroupFailure::demand_finite_loads(const MotionSample& at) const {
@@ -91,7 +92,7 @@ void GroupFailure::fail_loads(const MotionSample& at) const {
   fail("the loads are not finite", {});
 }
 
-void GroupFailure::fail_flow(const SolverError& error, SmoothMotion& motion, const double* y,
+void GroupFailure::fail_flow(const RunError& error, SmoothMotion& motion, const double* y,
                              MotionSample& memory) const {
   // The last evaluation of the flow need not be where it failed: a law of time shows itself at the end of the
   // step that was tried, or behind it, up to some thousand roundings of time.

@@ -4,8 +4,8 @@
 /// Errors of a clock group: they name its times, the parts that keep it from going on, and the problem.
 
 #include <carom/contact/island_problem.h>
-#include <carom/core/errors.h>
 #include <carom/core/export.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/event_driven/group_model.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
@@ -39,7 +39,7 @@ public:
   [[noreturn]] void fail_loads(const MotionSample& at) const;
   /// Fails as a flow did, naming the element whose loads are not finite at the last sample or where the flow
   /// failed. \param y the last good state \param memory last sample, overwritten
-  [[noreturn]] void fail_flow(const SolverError& error, SmoothMotion& motion, const double* y,
+  [[noreturn]] void fail_flow(const RunError& error, SmoothMotion& motion, const double* y,
                               MotionSample& memory) const;
 
   /// Name of a contact.

@@ -55,11 +55,15 @@ void GroupMeetings::start(double time) {
   target_ = time;
 }
 
-void GroupMeetings::advance(double to, EventBalance& balance) {
+void GroupMeetings::advance(double to, EventBalance& balance, double& reached) {
   from_ = target_;
   target_ = to;
   Appointment at;
-  while (queue_.take(to, at)) keep(at, balance);
+  while (queue_.take(to, at)) {
+    reached = at.time;
+    keep(at, balance);
+  }
+  reached = to;
   groups_->for_each([&](ClockGroup& group) { JoinableGroup(group).output(to, balance); });
 }
 

@@ -34,8 +34,9 @@ public:
   void regroup(const State& state);
   /// Begins at a time at which all groups were started.
   void start(double time);
-  /// Advances all groups; events at `to` included.
-  void advance(double to, EventBalance& balance);
+  /// Advances all groups; events at `to` included. \param reached time up to which all is decided [s],
+  /// written as it goes on: where this throws, it says how far it came
+  void advance(double to, EventBalance& balance, double& reached);
 
 private:
   void keep(const Appointment& at, EventBalance& balance);

@@ -1,6 +1,6 @@
 // Problem: a position that jumps is no motion.
 
-#include <carom/core/errors.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/event_driven/law_continuity.h>
 
 #include <algorithm>
@@ -9,12 +9,12 @@
 namespace carom {
 
 void LawContinuity::demand(double from, double to, double longest) {
+  good_until_ = from;
   if (prescribed_.empty() && !detector_->has_moving_ground()) return;
-  double last = from;
-  for (double part = 1.0; last < to; part += 1.0) {
+  for (double part = 1.0; good_until_ < to; part += 1.0) {
     const double next = std::min(to, from + part * longest);
-    demand_part(last, next);
-    last = next;
+    demand_part(good_until_, next);
+    good_until_ = next;
   }
 }
 
@@ -26,11 +26,11 @@ void LawContinuity::demand_part(double from, double to) {
     detector_->place(from, before_);
     detector_->place(to, after_);
     detector_->demand_continuous(before_, after_);
-  } catch (const SolverError& error) {
+  } catch (const RunError& error) {
     SolverFailure failure = error.failure();
     failure.time = from;
     failure.step = to - from;
-    throw SolverError("event-driven at t = " + to_text(from) + " s: " + error.what(), std::move(failure));
+    throw RunError("event-driven at t = " + to_text(from) + " s: " + error.what(), std::move(failure));
   }
 }
 

@@ -20,6 +20,8 @@ public:
   /// Demands that nothing prescribed jumps between two times [s], looking at times no farther apart than
   /// `longest` [s]. Throws SolverError naming the part.
   void demand(double from, double to, double longest);
+  /// Where the last demand() failed, the end of the part before, up to which all laws are good [s].
+  [[nodiscard]] double good_until() const { return good_until_; }
 
 private:
   void demand_part(double from, double to);
@@ -27,6 +29,7 @@ private:
   const Detector* detector_;
   PrescribedJoints prescribed_;
   GroundPlaces before_, after_;  // at the ends of an advance
+  double good_until_ = 0.0;
 };
 
 }  // namespace carom

@@ -1,7 +1,7 @@
 // Problem: a fault of the search for events must not pass for a motion.
 
 #include <carom/contact/pressed_bodies.h>
-#include <carom/core/errors.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/event_driven/overlap_check.h>
 
 #include <algorithm>
@@ -109,7 +109,7 @@ void OverlapCheck::demand_apart(const State& state, const Evaluation& evaluation
   const std::string what = "event-driven at t = " + to_text(state.time) +
                            " s: " + tell_overlap(failure.parts.front(), deepest.gap, allowed) +
                            uneven_masses_of(*assembly_);
-  throw SolverError(what, std::move(failure));
+  throw RunError(what, std::move(failure));
 }
 
 }  // namespace carom

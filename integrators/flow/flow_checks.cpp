@@ -1,6 +1,7 @@
 // Problem: say what is wrong with a call of a flow, or with the motion it follows.
 
 #include <carom/core/part_check.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/flow/flow_checks.h>
 
 #include <cmath>
@@ -69,8 +70,8 @@ void fail_flow(const std::string& why, double time, double step) {
   SolverFailure failure;
   failure.time = time;
   failure.step = step;
-  throw SolverError("smooth motion at t = " + to_text(time) + " s, step " + to_text(step) + " s: " + why,
-                    std::move(failure));
+  throw RunError("smooth motion at t = " + to_text(time) + " s, step " + to_text(step) + " s: " + why,
+                 std::move(failure));
 }
 
 void fail_flow_not_finite(double where, double time, double step) {

@@ -1,6 +1,6 @@
 // Problem: a step in which nothing passes through anything, or bodies are hit when they meet.
 
-#include <carom/core/errors.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/time_stepping/added_reports.h>
 #include <carom/integrators/time_stepping/parted_steps.h>
 
@@ -22,7 +22,7 @@ namespace {
                               " s: " + option + ": the step ends again and again where " +
                               failure.parts.front() + " meet; allowed: at most " +
                               std::to_string(PartedSteps::most_parts) + " times (a shorter step, or e < 1)";
-  throw SolverError(message, std::move(failure));
+  throw RunError(message, std::move(failure));
 }
 
 }  // namespace

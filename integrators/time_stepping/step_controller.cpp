@@ -1,5 +1,6 @@
 // Problem: choose the length of steps by the error of the smooth motion.
 
+#include <carom/core/run_error.h>
 #include <carom/integrators/time_stepping/added_reports.h>
 #include <carom/integrators/time_stepping/step_controller.h>
 
@@ -91,7 +92,7 @@ StepController::Attempt StepController::attempt(MakeStep make, const State& stat
   Comparison comparison = Comparison::nothing;
   try {
     comparison = try_step(make, state, companion, step, end);
-  } catch (const SolverError&) {
+  } catch (const RunError&) {
     // A shorter step may succeed; at the smallest the error is the caller's.
     if (step <= options_.control->smallest) throw;
     made.next = most_shrinking * step;
@@ -137,19 +138,19 @@ void StepController::fail_smallest(double time, double step, double error) const
   failure.time = time;
   failure.step = step;
   failure.residual = error;
-  throw SolverError("time stepping at t = " + to_text(time) + " s: error " + to_text(error) +
-                        " m at the smallest step, " + to_text(step) +
-                        " s; allowed: " + to_text(options_.control->tolerance) + " m",
-                    std::move(failure));
+  throw RunError("time stepping at t = " + to_text(time) + " s: error " + to_text(error) +
+                     " m at the smallest step, " + to_text(step) +
+                     " s; allowed: " + to_text(options_.control->tolerance) + " m",
+                 std::move(failure));
 }
 
 void StepController::fail_short(double time, double step) {
   SolverFailure failure;
   failure.time = time;
   failure.step = step;
-  throw SolverError("time stepping at t = " + to_text(time) + " s: a step of " + to_text(step) +
-                        " s is lost in the rounding of time; allowed: steps that move it (control.smallest)",
-                    std::move(failure));
+  throw RunError("time stepping at t = " + to_text(time) + " s: a step of " + to_text(step) +
+                     " s is lost in the rounding of time; allowed: steps that move it (control.smallest)",
+                 std::move(failure));
 }
 
 /// Makes the step at once and in halves. Returns what their difference tells.

@@ -4,6 +4,7 @@
 #include <carom/core/dynamics/coupling_rating.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/core/listed.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/run/failure_file.h>
 #include <carom/integrators/time_stepping/step_errors.h>
 
@@ -103,7 +104,7 @@ void check_options(const TimeStepping& options) {
   check_failure_directory(options.failure_directory, "time stepping");
 }
 
-SolverError with_place(const SolverError& error, const StepInput& in) {
+RunError with_place(const RunError& error, const StepInput& in) {
   if (error.failure().step > 0.0) return error;
   SolverFailure failure = error.failure();
   failure.time = in.start.time;
@@ -111,7 +112,7 @@ SolverError with_place(const SolverError& error, const StepInput& in) {
   return {place(in) + error.what(), std::move(failure)};
 }
 
-SolverError with_file(const SolverError& error, const TimeStepping& options) {
+RunError with_file(const RunError& error, const TimeStepping& options) {
   if (error.failure().problem == nullptr) return error;
   const std::string message = error.what();
   return {message + write_failure(options.failure_directory, error.failure(), message), error.failure()};
@@ -125,7 +126,7 @@ SolverFailure StepErrors::failure() const {
 }
 
 void StepErrors::fail(const std::string& what, SolverFailure& failure) const {
-  throw SolverError(place(in_) + what, std::move(failure));
+  throw RunError(place(in_) + what, std::move(failure));
 }
 
 SolverFailure StepErrors::failure_of(const IslandProblem& problem) const {

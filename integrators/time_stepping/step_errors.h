@@ -6,9 +6,9 @@
 
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
-#include <carom/core/errors.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/fixed_point.h>
+#include <carom/core/run_error.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 #include <carom/integrators/time_stepping/step_input.h>
@@ -22,10 +22,10 @@ namespace carom {
 CAROM_API void check_options(const TimeStepping& options);
 
 /// An error that knows of no step, as of a prescribed motion, with the time and the length of this one.
-[[nodiscard]] CAROM_API SolverError with_place(const SolverError& error, const StepInput& in);
+[[nodiscard]] CAROM_API RunError with_place(const RunError& error, const StepInput& in);
 
 /// The error with the name of a file of its contact problem, if it has one and a directory is given.
-[[nodiscard]] CAROM_API SolverError with_file(const SolverError& error, const TimeStepping& options);
+[[nodiscard]] CAROM_API RunError with_file(const RunError& error, const TimeStepping& options);
 
 /// Says why a step of one component failed.
 class CAROM_API StepErrors {

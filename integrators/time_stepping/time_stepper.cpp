@@ -65,7 +65,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
     flown_ = uncoupled_ ? uncoupled_->fly(in, state, companion, report) : Flight::not_free;
     if (flown_ == Flight::made) return;
     struck_ = impacts_ != nullptr && strike(in);
-  } catch (const SolverError& error) {
+  } catch (const RunError& error) {
     throw with_file(with_place(error, in), parts_.options);
   }
   if (!struck_) return step_from(in, state, companion, report);
@@ -107,7 +107,7 @@ void TimeStepper::step_from(const StepInput& in, State& state, Companion& compan
     memory_.sweeps = iteration_.sweeps();
     commit(in, memory_, parts_.trial, result, state, companion, report);
     capped_.write(report.capped_problem);
-  } catch (const SolverError& error) {
+  } catch (const RunError& error) {
     give_up(in, companion);
     throw with_file(with_place(error, in), parts_.options);
   } catch (...) {
@@ -138,7 +138,7 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
     ++passes_;
     try {
       advance_all(in);
-    } catch (const SolverError&) {
+    } catch (const RunError&) {
       turning_->give_up(islands);
       advance_all(in);
       break;
@@ -199,7 +199,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
                                         FixedPointJudge& judge) {
   const Index component = island.components.front();
   const auto first = static_cast<std::size_t>(in.companion.iterations.first(component));
-  std::optional<SolverError> failed;
+  std::optional<RunError> failed;
   for (std::size_t tried = 0; tried < iteration_count; ++tried) {
     const auto iteration = static_cast<Iteration>((first + tried) % iteration_count);
     if (tried == 1 && leads_astray(iteration, in, component, parts_.trial)) continue;
@@ -214,7 +214,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
     std::optional<LoadsKnown> known;
     try {
       known = iteration_.solve(island, in, judge);
-    } catch (const SolverError& error) {
+    } catch (const RunError& error) {
       // Iterates that grow may meet a contact problem without an answer, or loads that are not finite.
       if (!failed || iteration == Iteration::fixed_point) failed = error;
     }
@@ -224,7 +224,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
       return book(island, in, *known);
     }
   }
-  throw SolverError(*failed);
+  throw RunError(*failed);
 }
 
 /// Books the island, and moves its bodies out of ground shapes where that is asked for.
