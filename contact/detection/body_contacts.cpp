@@ -1,6 +1,7 @@
 // Problem: which bodies touch each other, where, and by which law.
 
 #include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/touching_kinds.h>
 
@@ -78,6 +79,13 @@ void place(const BodyOutlines& outlines, const BodySlots& bodies, const ContactQ
     const double* const centre = query.state.q + slot.q;
     memory.sides[i] = {list[i].body, slot.v, static_cast<int>(slot.v_size), {centre[0], centre[1]}};
   }
+}
+
+/// Velocity of a point of a body. \param velocities of all bodies
+Vec<2> velocity_at(const RowSide& side, const double* velocities, const Vec<2>& point) {
+  Vec<2> out(velocities[side.v], velocities[side.v + 1]);
+  if (side.columns > 2) out += Space<2>::lever_velocity(velocities + side.v + 2, Vec<2>(point - side.centre));
+  return out;
 }
 
 /// Writes which contact it is, and its law.
@@ -197,21 +205,41 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
   const BodyOutline &a = outlines_.list()[i], &b = outlines_.list()[j];
   const double margin = query.lasting == nullptr ? query.margin : any_gap;
   const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
-  const auto add_if_any = [&](const BodyTouch& touch) {
-    if (touch.gap.gap <= query.margin) {
+  const auto add_if_any = [&](const BodyTouch& touch, double most) {
+    if (touch.gap.gap <= most) {
       memory.touching.push_back(touch);
     } else if (query.lasting != nullptr && query.lasting->contains(key_of(a, b, touch.gap))) {
       add_lasting({i, j, touch.gap, touch.gap.gap / query.lasting->step()}, query, memory);
     }
   };
   if (of_a.size() == 1 && of_b.size() == 1 && margin == any_gap) {
-    return add_if_any({i, j, gap_of_vertices(of_a, 0, of_b, 0), 0.0});
+    return add_if_any({i, j, gap_of_vertices(of_a, 0, of_b, 0), 0.0}, query.margin);
   }
   std::array<GapPoint, 2> found;
   const int count = find_gaps(of_a, of_b, margin, found);
   for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
-    add_if_any({i, j, gap, 0.0});
+    add_if_any({i, j, gap, 0.0}, query.margin);
+    if (of_a.radius + of_b.radius > 0.0 || !is_near_corner(gap, lengths_.corner)) continue;
+    if (const auto second = second_at_corner({i, j, gap, 0.0}, query, memory))
+      add_if_any({i, j, *second, 0.0}, query.margin + (gap.gap <= query.margin ? lengths_.corner : 0.0));
   }
+}
+
+/// The other contact where two sharp corners meet.
+std::optional<GapPoint> BodyContacts::second_at_corner(const BodyTouch& first, const ContactQuery& query,
+                                                       const BodyContactSearch& memory) const {
+  const BodyOutline &a = outlines_.list()[first.a], &b = outlines_.list()[first.b];
+  const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
+  const GapPoint& gap = first.gap;
+  const bool edge_of_a = gap.kind == GapKind::edge_of_a;
+  const Index i = edge_of_a ? nearer_end(of_a, gap.feature_a, of_b.vertices[gap.feature_b]) : gap.feature_a,
+              j = edge_of_a ? gap.feature_b : nearer_end(of_b, gap.feature_b, of_a.vertices[gap.feature_a]);
+  CornerMeeting meeting{SharpCorner::of(of_a, i), SharpCorner::of(of_b, j), lengths_.corner};
+  meeting.lasts = query.lasting != nullptr && query.lasting->contains({a.vertex(i), b.surface()}) &&
+                  query.lasting->contains({a.surface(), b.vertex(j)});
+  meeting.velocity = velocity_at(memory.sides[first.a], query.state.v, meeting.a.at) -
+                     velocity_at(memory.sides[first.b], query.state.v, meeting.b.at);
+  return second_contact(gap, meeting);
 }
 
 /// Adds a contact of the step before that is a little open, where turning explains that.
@@ -268,7 +296,8 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   GapPoint gap = found[0];
   const bool is_near = std::abs(gap.gap) <= lengths_.corner_follows();
   if (at.is_sharp() && (is_near || FeatureRegions::is_flat(at.outline))) {
-    gap = tracked_gap(point, 0, at.outline, FeatureRegions(at).nearest());
+    const FeatureRegions regions(at);
+    gap = regions.gap(point, regions.nearest());
   }
   const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
   gap.feature_a = pair.feature - a.vertices.begin;
@@ -289,7 +318,7 @@ void BodyContacts::follow(const ContactPair& pair, Index feature, const StateVie
   const OutlinePair at = outline_pair(pair, state, evaluation);
   const Vec<2> vertex = at.vertex_at_outline();
   const GapPoint gap =
-      in_space(at.outline_frame, tracked_gap({{&vertex, 1}, a.radius}, 0, at.outline, feature));
+      in_space(at.outline_frame, FeatureRegions(at).gap({{&vertex, 1}, a.radius}, feature));
   const PairSide side_a = PairSide::of_body(bodies[a.body], a.body, a.radius, state);
   const PairSide side_b = PairSide::of_body(bodies[b.body], b.body, b.radius, state);
   if (contact.body() == a.body) {

@@ -36,9 +36,10 @@ void BodyPairs::append(std::span<const Index> bodies, std::vector<ContactPair>& 
 void BodyPairs::append(const BodyOutline& a, Index of_b, std::vector<ContactPair>& out) const {
   const BodyOutline& b = outlines_->list()[of_b];
   if (!may_touch(a, b)) return;
-  // Of two round ends one is enough.
+  // Of two round ends one is enough; a point touches both edges at a sharp corner.
   if (a.vertices.size() == 1 && b.vertices.size() == 1 && b.key < a.key) return;
-  if (b.vertices.size() == 1 && a.vertices.size() > 1) return;
+  const bool point_at_corners = b.is_point() && a.radius == 0.0;
+  if (b.vertices.size() == 1 && a.vertices.size() > 1 && !point_at_corners) return;
   for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
     out.push_back({.body = a.body, .feature = vertex, .other = b.body, .outline = of_b});
   }

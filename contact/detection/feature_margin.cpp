@@ -93,10 +93,50 @@ Index FeatureRegions::edge_at(Index corner, Index found) const {
   return separation_along(OutlineEdge(outline_, before)) > behind_corner ? n + before : n + corner;
 }
 
+/// The corner of the other outline that the vertex is, in the frame of the outline.
+SharpCorner FeatureRegions::corner_of_vertex() const {
+  const auto end = std::find(of_vertex_.vertices.begin(), of_vertex_.vertices.end(), vertex_);
+  if (end == of_vertex_.vertices.end()) return {};
+  SharpCorner corner =
+      SharpCorner::of(of_vertex_, static_cast<Index>(end - of_vertex_.vertices.begin()));
+  for (Vec<2>* place : {&corner.before, &corner.at, &corner.behind}) *place = in_frame_of_outline(*place);
+  return corner;
+}
+
+/// The feature at a corner where the directions that both corners push in end at two edges of one outline: of
+/// the two pairs of the corners that of the vertex that has no edge there takes the lower end, the other one
+/// the upper end, or touches nothing where the corners do not meet. No number where nothing like this decides.
+std::optional<Index> FeatureRegions::edge_of_one(Index corner) const {
+  if (chain_ && chain_->corners[corner] != ChainCorner::convex) return {};
+  const SharpCorner a = corner_of_vertex(), b = SharpCorner::of(outline_, corner);
+  const std::optional<CommonCone> cone = common_cone(a, b);
+  if (!cone || !cone->is_of_one()) return {};
+  const GapPoint lower = gap_along(cone->lower, a, b), upper = gap_along(cone->upper, a, b);
+  const bool meet = std::max(std::abs(lower.gap), std::abs(upper.gap)) <= lengths_.corner &&
+                    std::min(lower.within, upper.within) >= -lengths_.corner;
+  if (cone->lower.is_of_a) return meet ? 2 * outline_.size() + 2 * corner + 1 : corner;
+  return meet ? std::optional<Index>(b.edge_before) : std::nullopt;
+}
+
+/// The edge of the vertex's outline of such a feature.
+ConeEnd FeatureRegions::own_edge(Index feature) const {
+  ConeEnd end;
+  end.is_of_a = true;
+  end.is_behind = (feature - 2 * outline_.size()) % 2 == 1;
+  return end;
+}
+
+GapPoint FeatureRegions::gap(const ConvexOutline& point, Index feature) const {
+  if (!is_of_vertex(feature)) return tracked_gap(point, 0, outline_, feature);
+  return gap_along(own_edge(feature), corner_of_vertex(), SharpCorner::of(outline_, corner_of(feature)));
+}
+
 /// The edge that the vertex touches at a corner, or the corner where it touches none: it stands beyond the
 /// end of the edge, so that the corner stands before an edge of the other outline, or that separates them
 /// more.
 Index FeatureRegions::touching_at(Index corner, Index found) const {
+  if (const std::optional<Index> of_one = edge_of_one(corner)) return *of_one;
+  if (outline_.size() == 1) return corner;
   const Index edge = edge_at(corner, found);
   if (chain_ || margin(edge).value >= -lengths_.corner) return edge;
   const auto end = std::find(of_vertex_.vertices.begin(), of_vertex_.vertices.end(), vertex_);
@@ -165,6 +205,15 @@ double FeatureRegions::clearance(Index feature) const {
 FeatureMargin FeatureRegions::margin(Index feature) const {
   if (chain_) return chain_->margin(feature, place_, rate_);
   const Index n = outline_.size();
+  if (is_of_vertex(feature)) {
+    const SharpCorner own = corner_of_vertex();
+    const bool is_behind = own_edge(feature).is_behind;
+    const std::array<Vec<2>, 2> ends{is_behind ? own.at : own.before, is_behind ? own.behind : own.at};
+    const OutlineEdge edge({ends, 0.0}, 0);
+    const Vec<2> inwards = is_behind ? edge.along : Vec<2>(-edge.along);
+    const Index corner = corner_of(feature);
+    return {inwards.dot(outline_.vertices[corner] - own.at), -inwards.dot(rate_), corner};
+  }
   if (outline_.is_edge(feature)) {
     const OutlineEdge edge(outline_, feature - n);
     const double along = edge.coordinate(place_), speed = edge.along.dot(rate_);

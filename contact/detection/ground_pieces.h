@@ -9,6 +9,7 @@
 
 #include <carom/contact/detection/box.h>
 #include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/face_chain.h>
 #include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_face.h>
@@ -82,6 +83,13 @@ public:
   [[nodiscard]] ConvexOutline view(Index outline) const;
   /// A chain.
   [[nodiscard]] FaceChain chain(Index outline) const;
+  /// A corner of an outline. \param vertex number in the outline
+  [[nodiscard]] SharpCorner corner(Index outline, Index vertex) const {
+    const Range& own = outlines_[outline].vertices;
+    const auto& [at, behind, before] = around_[own.begin + vertex];
+    const Index edge_before = vertex == 0 ? own.size() - 1 : vertex - 1;
+    return {before, at, behind, false, vertex, own.size() + edge_before, own.size() + vertex};
+  }
   /// The part of an outline around a vertex, which is the first of its vertices.
   [[nodiscard]] std::span<const Vec<2>> around(Index vertex) const { return around_[vertex]; }
   /// The gap of given features, as tracked_gap() (gap_convex.h).

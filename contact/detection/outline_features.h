@@ -31,11 +31,14 @@ struct OutlineFeatures {
 };
 
 /// Names a contact: a vertex stands against the outline of the other side, whichever of its features is
-/// nearest. Of two vertices it is the one of the outline with fewer.
+/// nearest. Of two vertices it is the one of the outline with fewer. Two corners that meet have two contacts,
+/// each with the name of another corner, though both normals may be of edges of one outline
+/// (corner_meeting.h): the gap of the second one then names the two corners.
 [[nodiscard]] inline ConstraintKey key_of(const OutlineFeatures& a, const OutlineFeatures& b,
                                           const GapPoint& gap) {
-  const bool of_a = gap.kind == GapKind::edge_of_b ||
-                    (gap.kind == GapKind::vertices && a.vertices.size() <= b.vertices.size());
+  bool of_a = a.vertices.size() <= b.vertices.size();
+  if (gap.kind == GapKind::edge_of_a) of_a = gap.feature_a < a.vertices.size();
+  if (gap.kind == GapKind::edge_of_b) of_a = gap.feature_b >= b.vertices.size();
   return of_a ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
               : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
 }

@@ -1,5 +1,6 @@
 // Problem: which of many pieces of the ground a body touches, where, and by which law.
 
+#include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/gap_convex.h>
 #include <carom/contact/detection/pair_rows.h>
@@ -19,6 +20,7 @@ struct PieceContacts::Search {
   ConvexOutline placed;  // in the frame of the family
   const GroundMotion* motion;
   PlaneFrame frame;   // of the family
+  PlaneFrame of_body;
   double margin;      // of gaps, those of lasting contacts included
   std::size_t first;  // contact of the outline
 };
@@ -97,10 +99,10 @@ void PieceContacts::find_of(Index body, const ContactQuery& query, std::vector<C
 void PieceContacts::find_in(const Family& family, const BodyOutline& outline, const ContactQuery& query,
                             std::vector<Constraint>& out) const {
   const BodySlot& body = assembly_->layout()->bodies()[outline.body];
-  Search search{query, outline, {}, nullptr, {}, query.margin, out.size()};
+  Search search{query, outline, {}, nullptr, {}, {}, query.margin, out.size()};
   if (family.shape != none) search.motion = shapes_.motion(family.shape, query.places);
   search.frame = PlaneFrame(search.motion);
-  const PlaneFrame of_body(body, query.state, query.evaluation);
+  const PlaneFrame of_body = search.of_body = PlaneFrame(body, query.state, query.evaluation);
   if (query.lasting != nullptr && !query.lasting->empty()) {
     // No contact of the step before has opened faster than the sides move.
     constexpr double faster = 2.0;
@@ -139,15 +141,46 @@ void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Co
   std::array<GapPoint, 2> found;
   const int count = pieces_.find(piece, search.placed, search.margin, found);
   for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
-    add(search, on_ground, search.motion == nullptr ? gap : in_space(search.frame, gap), out);
+    add(search, on_ground, gap, search.query.margin, out);
+    const std::optional<GapPoint> second = second_at_corner(search, on_ground, gap);
+    if (!second) continue;
+    const bool touches = gap.gap <= search.query.margin;
+    add(search, on_ground, *second, search.query.margin + (touches ? pieces_.lengths().corner : 0.0), out);
   }
 }
 
-/// Appends a contact that is closed, or was and may still be.
-void PieceContacts::add(const Search& search, Index on_ground, const GapPoint& gap,
+/// The other contact where a sharp corner of a body meets one of the ground.
+std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, Index on_ground,
+                                                        const GapPoint& first) const {
+  const GroundOutline& b = pieces_.outlines()[on_ground];
+  const ConvexOutline &of_a = search.placed, of_b = pieces_.view(on_ground);
+  const double same_place = pieces_.lengths().corner;
+  if (b.is_hollow() || of_a.radius + b.radius > 0.0 || !is_near_corner(first, same_place)) return {};
+  const bool edge_of_a = first.kind == GapKind::edge_of_a;
+  const Index i = edge_of_a ? nearer_end(of_a, first.feature_a, of_b.vertices[first.feature_b])
+                            : first.feature_a,
+              j = edge_of_a ? first.feature_b
+                            : nearer_end(of_b, first.feature_b, of_a.vertices[first.feature_a]);
+  if (!pieces_.is_corner(b.vertices.begin + j)) return {};
+  CornerMeeting meeting{SharpCorner::of(of_a, i), pieces_.corner(on_ground, j), same_place};
+  const BodyOutline& a = search.outline;
+  const LastingContacts* const lasting = search.query.lasting;
+  meeting.lasts = lasting != nullptr && lasting->contains({a.vertex(i), b.surface()}) &&
+                  lasting->contains({a.surface(), b.vertex(j)});
+  const Vec<2> place = search.frame.outside(meeting.a.at);
+  meeting.velocity = search.frame.turned_back(
+      Vec<2>(search.of_body.velocity_at(Vec<2>(place - search.of_body.centre)) -
+             search.frame.velocity_at(Vec<2>(search.frame.outside(meeting.b.at) - search.frame.centre))));
+  return second_contact(first, meeting);
+}
+
+/// Appends a contact that is closed, or was and may still be. \param local its gap, in the frame of the family
+/// \param most largest gap of what is closed [m]
+void PieceContacts::add(const Search& search, Index on_ground, const GapPoint& local, double most,
                         std::vector<Constraint>& out) const {
   const ContactQuery& query = search.query;
-  const bool touches = gap.gap <= query.margin;
+  const GapPoint gap = search.motion == nullptr ? local : in_space(search.frame, local);
+  const bool touches = gap.gap <= most;
   const ConstraintKey key = key_of(search.outline, pieces_.outlines()[on_ground], gap);
   if (!touches && (query.lasting == nullptr || !query.lasting->contains(key))) return;
   // Deep in the solid a vertex may be before two faces of a chain: it is out of the nearer one first.
@@ -225,8 +258,8 @@ GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, I
     gap.feature_a = pair.feature - outlines_.list()[outlines_.outline_of(pair.feature)].vertices.begin;
     return in_space(at.outline_frame, gap);
   }
-  if (feature == none) feature = FeatureRegions(at).nearest();
-  GapPoint gap = tracked_gap(point, 0, at.outline, feature);
+  const FeatureRegions regions(at);
+  GapPoint gap = regions.gap(point, feature == none ? regions.nearest() : feature);
   gap.feature_a =
       pair.ground_vertex - pieces_.outlines()[pieces_.outline_of(pair.ground_vertex)].vertices.begin;
   return in_space(at.outline_frame, gap).swapped();
@@ -280,8 +313,8 @@ void PieceContacts::follow(const ContactPair& pair, Index feature, const StateVi
   pieces_.fill_rows(on_ground, PairSide::of_body(body, pair.body, a.radius, state), gap, motion, {}, contact);
 }
 
-/// Each vertex of a body against each outline on ground; and, where the body has edges, each corner of the
-/// ground against each outline of the body. Of two round ends one is enough.
+/// Each vertex of a body against each outline on ground; and, where the body has edges or is a point, each
+/// corner of the ground against each outline of the body. Of two round ends one is enough.
 void PieceContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {
   const Range bodies = assembly_->bodies_of({component, component + 1});
   for (Index i = begin_[bodies.begin]; i < begin_[bodies.end]; ++i) {
@@ -297,7 +330,8 @@ void PieceContacts::append_pairs(Index component, std::vector<ContactPair>& out)
         out.back().feature = vertex;
         out.back().ground_outline = on_ground;
       }
-      if (a.vertices.size() == 1 || b.is_hollow()) continue;
+      const bool point_at_corners = a.is_point() && b.radius == 0.0 && !is_peg;
+      if ((a.vertices.size() == 1 && !point_at_corners) || b.is_hollow()) continue;
       for (Index vertex = b.vertices.begin; vertex < b.vertices.end; ++vertex) {
         if (!pieces_.is_corner(vertex)) continue;
         out.push_back(pair);

@@ -59,6 +59,7 @@ BodyPairBound bound_on_ground(const Assembly& assembly, const PieceContacts& con
   bound.lever = farthest_of(outlines.described(outline));
   bound.radius = outline.radius;
   bound.rounding = outline.radius + radius;
+  bound.round = outline.vertices.size() == 1;
   bound.box = {vertex.array() - radius, vertex.array() + radius};
   bound.reach = vertex.norm() + radius;
   return bound;

@@ -31,6 +31,8 @@ struct CAROM_API BodyPairBound {
   double hollow = 0.0;     ///< radius of a circle on ground that the body is inside of; 0: there is none [m]
   bool on_ground = false;  ///< there is no body `b`
 
+  /// False of two points: a point and a corner close when the point closes with the outline of the corner.
+  [[nodiscard]] bool closes_alone() const { return !round || rounding > 0.0 || hollow > 0.0; }
   /// Not more than the gap, and equal to it of discs around their centres of mass [m]. \param motion of the
   /// shape on ground, null if there is none or it is at rest
   [[nodiscard]] double least_gap(const StateView& state, const GroundMotion* motion) const;

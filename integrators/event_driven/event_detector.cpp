@@ -58,9 +58,12 @@ void EventDetector::begin_phase(double time, const double* y, const EventScales&
 void EventDetector::list_active() {
   memory_->is_active.assign(motion_->model().pairs.size(), 0);
   for (const ActiveContact& contact : motion_->active().list()) memory_->is_active[contact.place] = 1;
-  // Rolling resistance has no gap of its own.
+  // Rolling resistance has no gap of its own, and a point none at a corner.
   for (std::size_t i = 0; i < memory_->is_active.size(); ++i) {
     if (motion_->model().pairs[i].rolling) memory_->is_active[i] = 1;
+  }
+  for (const BodyPairBound& bound : motion_->model().bounds) {
+    if (!bound.closes_alone()) memory_->is_active[bound.pair] = 1;
   }
 }
 

@@ -157,6 +157,7 @@ double MeetingSearch::noise(const Bodies& bodies, const BodyPairBound& bound) co
 
 double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, double end) {
   const BodyPairBound bound = bound_of_pair(*assembly_, *detector_, pair);
+  if (!bound.closes_alone()) return never;
   const PairGap gap{*assembly_, *detector_, pair, bound};
   ClosingRule rule;
   rule.noise = noise(bodies, bound);

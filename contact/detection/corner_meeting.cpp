@@ -1,0 +1,115 @@
+#include <carom/contact/detection/corner_meeting.h>
+#include <carom/contact/detection/gap_vertex_edge.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace carom {
+
+namespace {
+
+double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+/// Outward normals of the two edges at a corner.
+struct CornerNormals {
+  Vec<2> before, behind;
+  bool exist = false;
+
+  explicit CornerNormals(const SharpCorner& of) {
+    const std::array<Vec<2>, 3> chain{of.before, of.at, of.behind};
+    const OutlineEdge in({std::span(chain).first(2), 0.0}, 0), out({std::span(chain).last(2), 0.0}, 0);
+    before = in.normal();
+    behind = out.normal();
+    exist = in.length > 0.0 && out.length > 0.0;
+  }
+};
+
+/// True if a direction is one of those from one direction counter-clockwise to another.
+bool is_between(const Vec<2>& from, const Vec<2>& direction, const Vec<2>& to) {
+  constexpr double rounding = 1e-12;  // two directions that coincide are both between each other
+  return cross(from, direction) >= -rounding && cross(direction, to) >= -rounding &&
+         direction.dot(from + to) >= -rounding;
+}
+
+/// Edge of a corner, from its vertex on or up to it, as an outline of two vertices.
+std::array<Vec<2>, 2> edge_of(const SharpCorner& corner, bool is_behind) {
+  if (is_behind) return {corner.at, corner.behind};
+  return {corner.before, corner.at};
+}
+
+}  // namespace
+
+std::optional<CommonCone> common_cone(const SharpCorner& a, const SharpCorner& b) {
+  const CornerNormals of_a(a), of_b(b);
+  if ((!a.is_point && !of_a.exist) || (!b.is_point && !of_b.exist) || (a.is_point && b.is_point)) return {};
+  const ConeEnd a_lower{-of_a.before, true, false}, a_upper{-of_a.behind, true, true};
+  const ConeEnd b_lower{of_b.before, false, false}, b_upper{of_b.behind, false, true};
+  const auto is_of_a = [&](const ConeEnd& end) {
+    return a.is_point || is_between(a_lower.normal, end.normal, a_upper.normal);
+  };
+  const auto is_of_b = [&](const ConeEnd& end) {
+    return b.is_point || is_between(b_lower.normal, end.normal, b_upper.normal);
+  };
+  CommonCone cone;
+  if (!b.is_point && is_of_a(b_lower)) {
+    cone.lower = b_lower;
+  } else if (!a.is_point && is_of_b(a_lower)) {
+    cone.lower = a_lower;
+  } else {
+    return {};
+  }
+  if (!b.is_point && is_of_a(b_upper)) {
+    cone.upper = b_upper;
+  } else if (!a.is_point && is_of_b(a_upper)) {
+    cone.upper = a_upper;
+  } else {
+    return {};
+  }
+  constexpr double one_direction = 1e-6;  // rows that say the same, but for rounding of what they lead to [rad]
+  if (cross(cone.lower.normal, cone.upper.normal) <= one_direction) return {};
+  return cone;
+}
+
+GapPoint gap_along(const ConeEnd& end, const SharpCorner& a, const SharpCorner& b) {
+  const SharpCorner &of_edge = end.is_of_a ? a : b, &other = end.is_of_a ? b : a;
+  const std::array<Vec<2>, 2> edge = edge_of(of_edge, end.is_behind);
+  const ConvexOutline corner{{&other.at, 1}, 0.0};
+  GapPoint gap = gap_of_edge_of_a({edge, 0.0}, 0, corner, 0);
+  gap.feature_a = end.is_behind ? of_edge.edge_behind : of_edge.edge_before;
+  gap.feature_b = other.vertex;
+  return end.is_of_a ? gap : gap.swapped();
+}
+
+std::optional<GapPoint> second_contact(const GapPoint& first, const CornerMeeting& meeting) {
+  const SharpCorner &a = meeting.a, &b = meeting.b;
+  const std::optional<CommonCone> cone = common_cone(a, b);
+  if (!cone) return {};
+  const auto is_first = [&](const ConeEnd& end) {
+    const Index edge = end.is_of_a ? first.feature_a : first.feature_b;
+    const SharpCorner& of = end.is_of_a ? a : b;
+    return end.is_of_a == (first.kind == GapKind::edge_of_a) &&
+           edge == (end.is_behind ? of.edge_behind : of.edge_before);
+  };
+  const bool is_lower = is_first(cone->lower);
+  if (!is_lower && !is_first(cone->upper)) return {};
+  GapPoint second = gap_along(is_lower ? cone->upper : cone->lower, a, b);
+  if (cone->is_of_one()) {
+    second.feature_a = a.vertex;
+    second.feature_b = b.vertex;
+  }
+  if (meeting.lasts) return second;
+  if (std::min(first.within, second.within) < -meeting.same_place) return {};
+  if (std::abs(first.gap - second.gap) <= meeting.same_place) return second;
+  // Back along the way that it came, the corner stood in the place of the other one; it did not slide there
+  // along an edge.
+  constexpr double slides = 1e-3;  // part of a speed that is none across an edge
+  const Vec<2>& v = meeting.velocity;
+  const double speed = v.norm();
+  const bool closes = std::max(first.normal.dot(v), second.normal.dot(v)) < -slides * speed;
+  const bool comes_from_corner = std::abs(cross(a.at - b.at, v)) <= meeting.same_place * speed;
+  if (closes && comes_from_corner) return second;
+  return {};
+}
+
+}  // namespace carom
