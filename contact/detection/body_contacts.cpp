@@ -217,20 +217,26 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
   }
   std::array<GapPoint, 2> found;
   const int count = find_gaps(of_a, of_b, margin, found);
-  for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
-    add_if_any({i, j, gap, 0.0}, query.margin);
-    if (of_a.radius + of_b.radius > 0.0 || !is_near_corner(gap, lengths_.corner)) continue;
-    if (const auto second = second_at_corner({i, j, gap, 0.0}, query, memory))
-      add_if_any({i, j, *second, 0.0}, query.margin + (gap.gap <= query.margin ? lengths_.corner : 0.0));
-  }
+  BodyTouch first{i, j, found[0], 0.0};
+  std::optional<GapPoint> second;
+  if (count > 0 && of_a.radius + of_b.radius == 0.0 && is_near_corner(found[0], lengths_.corner))
+    second = second_at_corner(first, query, memory);
+  // Where one of two corners that meet touches, so does the other one.
+  const bool both = second && std::min(first.gap.gap, second->gap) <= query.margin;
+  const double most = query.margin + (both ? lengths_.corner : 0.0);
+  if (count > 0) add_if_any(first, most);
+  if (second) add_if_any({i, j, *second, 0.0}, most);
+  // One of the same name as the second is of the same corner.
+  if (count > 1 && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
+    add_if_any({i, j, found[1], 0.0}, query.margin);
 }
 
-/// The other contact where two sharp corners meet.
-std::optional<GapPoint> BodyContacts::second_at_corner(const BodyTouch& first, const ContactQuery& query,
+/// The other contact where two sharp corners meet. \param first changes if the other one comes first
+std::optional<GapPoint> BodyContacts::second_at_corner(BodyTouch& first, const ContactQuery& query,
                                                        const BodyContactSearch& memory) const {
   const BodyOutline &a = outlines_.list()[first.a], &b = outlines_.list()[first.b];
   const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
-  const GapPoint& gap = first.gap;
+  GapPoint& gap = first.gap;
   const bool edge_of_a = gap.kind == GapKind::edge_of_a;
   const Index i = edge_of_a ? nearer_end(of_a, gap.feature_a, of_b.vertices[gap.feature_b]) : gap.feature_a,
               j = edge_of_a ? gap.feature_b : nearer_end(of_b, gap.feature_b, of_a.vertices[gap.feature_a]);
@@ -294,7 +300,7 @@ void BodyContacts::contact(const ContactPair& pair, const StateView& state, cons
   std::array<GapPoint, 2> found;
   static_cast<void>(find_gaps(point, at.outline, any_gap, found));
   GapPoint gap = found[0];
-  const bool is_near = std::abs(gap.gap) <= lengths_.corner_follows();
+  const bool is_near = gap.gap <= lengths_.corner_follows();
   if (at.is_sharp() && (is_near || FeatureRegions::is_flat(at.outline))) {
     const FeatureRegions regions(at);
     gap = regions.gap(point, regions.nearest());
@@ -317,8 +323,7 @@ void BodyContacts::follow(const ContactPair& pair, Index feature, const StateVie
                     &b = outlines_.list()[pair.outline];
   const OutlinePair at = outline_pair(pair, state, evaluation);
   const Vec<2> vertex = at.vertex_at_outline();
-  const GapPoint gap =
-      in_space(at.outline_frame, FeatureRegions(at).gap({{&vertex, 1}, a.radius}, feature));
+  const GapPoint gap = in_space(at.outline_frame, FeatureRegions(at).gap({{&vertex, 1}, a.radius}, feature));
   const PairSide side_a = PairSide::of_body(bodies[a.body], a.body, a.radius, state);
   const PairSide side_b = PairSide::of_body(bodies[b.body], b.body, b.radius, state);
   if (contact.body() == a.body) {

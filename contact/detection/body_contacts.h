@@ -104,7 +104,7 @@ private:
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;
-  [[nodiscard]] std::optional<GapPoint> second_at_corner(const BodyTouch& first, const ContactQuery& query,
+  [[nodiscard]] std::optional<GapPoint> second_at_corner(BodyTouch& first, const ContactQuery& query,
                                                          const BodyContactSearch& memory) const;
   void add_lasting(BodyTouch touch, const ContactQuery& query, BodyContactSearch& memory) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b, const GapPoint& gap,

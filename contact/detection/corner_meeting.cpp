@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace carom {
 
 namespace {
 
-double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+double turn_between(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// Outward normals of the two edges at a corner.
 struct CornerNormals {
@@ -26,9 +27,9 @@ struct CornerNormals {
 };
 
 /// True if a direction is one of those from one direction counter-clockwise to another.
-bool is_between(const Vec<2>& from, const Vec<2>& direction, const Vec<2>& to) {
+bool is_from_to(const Vec<2>& from, const Vec<2>& direction, const Vec<2>& to) {
   constexpr double rounding = 1e-12;  // two directions that coincide are both between each other
-  return cross(from, direction) >= -rounding && cross(direction, to) >= -rounding &&
+  return turn_between(from, direction) >= -rounding && turn_between(direction, to) >= -rounding &&
          direction.dot(from + to) >= -rounding;
 }
 
@@ -46,10 +47,10 @@ std::optional<CommonCone> common_cone(const SharpCorner& a, const SharpCorner& b
   const ConeEnd a_lower{-of_a.before, true, false}, a_upper{-of_a.behind, true, true};
   const ConeEnd b_lower{of_b.before, false, false}, b_upper{of_b.behind, false, true};
   const auto is_of_a = [&](const ConeEnd& end) {
-    return a.is_point || is_between(a_lower.normal, end.normal, a_upper.normal);
+    return a.is_point || is_from_to(a_lower.normal, end.normal, a_upper.normal);
   };
   const auto is_of_b = [&](const ConeEnd& end) {
-    return b.is_point || is_between(b_lower.normal, end.normal, b_upper.normal);
+    return b.is_point || is_from_to(b_lower.normal, end.normal, b_upper.normal);
   };
   CommonCone cone;
   if (!b.is_point && is_of_a(b_lower)) {
@@ -66,8 +67,9 @@ std::optional<CommonCone> common_cone(const SharpCorner& a, const SharpCorner& b
   } else {
     return {};
   }
-  constexpr double one_direction = 1e-6;  // rows that say the same, but for rounding of what they lead to [rad]
-  if (cross(cone.lower.normal, cone.upper.normal) <= one_direction) return {};
+  constexpr double one_direction =
+      1e-6;  // rows that say the same, but for rounding of what they lead to [rad]
+  if (turn_between(cone.lower.normal, cone.upper.normal) <= one_direction) return {};
   return cone;
 }
 
@@ -81,7 +83,25 @@ GapPoint gap_along(const ConeEnd& end, const SharpCorner& a, const SharpCorner& 
   return end.is_of_a ? gap : gap.swapped();
 }
 
-std::optional<GapPoint> second_contact(const GapPoint& first, const CornerMeeting& meeting) {
+namespace {
+
+/// True if corners of which neither stands beyond the edge that the other one touches meet.
+bool do_meet(const GapPoint& first, const GapPoint& second, const CornerMeeting& meeting) {
+  if (meeting.lasts) return true;
+  if (std::min(first.within, second.within) < -meeting.same_place) return false;
+  if (std::abs(first.gap - second.gap) <= meeting.same_place) return true;
+  // Back along the way that it came, the corner stood in the place of the other one; it did not slide there
+  // along an edge.
+  constexpr double slides = 1e-3;  // part of a speed that is none across an edge
+  const Vec<2>& v = meeting.velocity;
+  const double speed = v.norm();
+  const bool closes = std::max(first.normal.dot(v), second.normal.dot(v)) < -slides * speed;
+  return closes && std::abs(turn_between(meeting.a.at - meeting.b.at, v)) <= meeting.same_place * speed;
+}
+
+}  // namespace
+
+std::optional<GapPoint> second_contact(GapPoint& first, const CornerMeeting& meeting) {
   const SharpCorner &a = meeting.a, &b = meeting.b;
   const std::optional<CommonCone> cone = common_cone(a, b);
   if (!cone) return {};
@@ -94,22 +114,14 @@ std::optional<GapPoint> second_contact(const GapPoint& first, const CornerMeetin
   const bool is_lower = is_first(cone->lower);
   if (!is_lower && !is_first(cone->upper)) return {};
   GapPoint second = gap_along(is_lower ? cone->upper : cone->lower, a, b);
-  if (cone->is_of_one()) {
-    second.feature_a = a.vertex;
-    second.feature_b = b.vertex;
-  }
-  if (meeting.lasts) return second;
-  if (std::min(first.within, second.within) < -meeting.same_place) return {};
-  if (std::abs(first.gap - second.gap) <= meeting.same_place) return second;
-  // Back along the way that it came, the corner stood in the place of the other one; it did not slide there
-  // along an edge.
-  constexpr double slides = 1e-3;  // part of a speed that is none across an edge
-  const Vec<2>& v = meeting.velocity;
-  const double speed = v.norm();
-  const bool closes = std::max(first.normal.dot(v), second.normal.dot(v)) < -slides * speed;
-  const bool comes_from_corner = std::abs(cross(a.at - b.at, v)) <= meeting.same_place * speed;
-  if (closes && comes_from_corner) return second;
-  return {};
+  if (!do_meet(first, second, meeting)) return {};
+  if (!cone->is_of_one()) return second;
+  const bool lower_first = is_lower ? is_lower_first(first, second, meeting.same_place)
+                                    : is_lower_first(second, first, meeting.same_place);
+  if (lower_first != is_lower) std::swap(first, second);
+  second.feature_a = a.vertex;
+  second.feature_b = b.vertex;
+  return second;
 }
 
 }  // namespace carom

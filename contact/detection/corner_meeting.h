@@ -76,6 +76,13 @@ struct CommonCone {
 /// other.
 [[nodiscard]] CAROM_API GapPoint gap_along(const ConeEnd& end, const SharpCorner& a, const SharpCorner& b);
 
+/// Which of two contacts of corners that meet comes first, where both are of edges of one outline: that
+/// along the lower end if the gaps are the same, else that with the larger gap. It has the name of the corner
+/// that has no edge there. \param same gaps that differ by no more are the same [m]
+[[nodiscard]] inline bool is_lower_first(const GapPoint& lower, const GapPoint& upper, double same) {
+  return upper.gap - lower.gap <= same;
+}
+
 /// Two sharp corners near a contact that has been found.
 struct CornerMeeting {
   SharpCorner a, b;
@@ -96,12 +103,11 @@ struct CornerMeeting {
 
 /// The second contact of two sharp corners that meet: along the other end of their common cone. Nothing where
 /// one corner just stands before an edge of the other outline. Where both contacts are of edges of one
-/// outline, features of the second one are the two vertices (key_of(), outline_features.h). \param first
-/// contact of one corner and an edge that has been found
+/// outline, features of the second one are the two vertices (key_of(), outline_features.h), and the first one
+/// becomes that which comes first. \param first contact of one corner and an edge that has been found
 ///
 /// Corners meet where gaps along both ends are the same; where they touched along both in the step before;
 /// and where they came from one place with the velocity that they have: overlap after a step is no edge's.
-[[nodiscard]] CAROM_API std::optional<GapPoint> second_contact(const GapPoint& first,
-                                                               const CornerMeeting& meeting);
+[[nodiscard]] CAROM_API std::optional<GapPoint> second_contact(GapPoint& first, const CornerMeeting& meeting);
 
 }  // namespace carom

@@ -44,6 +44,7 @@ Index FeatureRegions::nearest() const {
     distance = found[0].gap;
   }
   if (!sharp_ || !has_several()) return feature;
+  if (distance < -lengths_.corner_follows()) return behind_corner(feature, -distance);
   if (std::abs(distance) > lengths_.corner_follows()) return face_of_segment(feature);
   // In the place of a corner rounding decides which feature is nearest.
   for (Index corner = 0; corner < outline_.size(); ++corner) {
@@ -97,25 +98,45 @@ Index FeatureRegions::edge_at(Index corner, Index found) const {
 SharpCorner FeatureRegions::corner_of_vertex() const {
   const auto end = std::find(of_vertex_.vertices.begin(), of_vertex_.vertices.end(), vertex_);
   if (end == of_vertex_.vertices.end()) return {};
-  SharpCorner corner =
-      SharpCorner::of(of_vertex_, static_cast<Index>(end - of_vertex_.vertices.begin()));
+  SharpCorner corner = SharpCorner::of(of_vertex_, static_cast<Index>(end - of_vertex_.vertices.begin()));
   for (Vec<2>* place : {&corner.before, &corner.at, &corner.behind}) *place = in_frame_of_outline(*place);
   return corner;
 }
 
-/// The feature at a corner where the directions that both corners push in end at two edges of one outline: of
-/// the two pairs of the corners that of the vertex that has no edge there takes the lower end, the other one
-/// the upper end, or touches nothing where the corners do not meet. No number where nothing like this decides.
-std::optional<Index> FeatureRegions::edge_of_one(Index corner) const {
+/// The directions that both corners push in, where the vertex is at a corner of the outline, and the gaps
+/// along the ends.
+std::optional<FeatureRegions::Meeting> FeatureRegions::meeting_at(Index corner) const {
   if (chain_ && chain_->corners[corner] != ChainCorner::convex) return {};
   const SharpCorner a = corner_of_vertex(), b = SharpCorner::of(outline_, corner);
   const std::optional<CommonCone> cone = common_cone(a, b);
-  if (!cone || !cone->is_of_one()) return {};
-  const GapPoint lower = gap_along(cone->lower, a, b), upper = gap_along(cone->upper, a, b);
-  const bool meet = std::max(std::abs(lower.gap), std::abs(upper.gap)) <= lengths_.corner &&
-                    std::min(lower.within, upper.within) >= -lengths_.corner;
-  if (cone->lower.is_of_a) return meet ? 2 * outline_.size() + 2 * corner + 1 : corner;
-  return meet ? std::optional<Index>(b.edge_before) : std::nullopt;
+  if (!cone) return {};
+  return Meeting{*cone, gap_along(cone->lower, a, b), gap_along(cone->upper, a, b)};
+}
+
+/// The feature at a corner where the directions that both corners push in end at two edges of one outline: of
+/// the two pairs of the corners that of the vertex that has no edge there takes one, the other pair the other
+/// one (is_lower_first()). No number where they end at an edge of either.
+std::optional<Index> FeatureRegions::edge_of_one(Index corner, const Meeting& at) const {
+  if (!at.cone.is_of_one()) return {};
+  const bool lower_first = is_lower_first(at.lower, at.upper, lengths_.corner);
+  const SharpCorner b = SharpCorner::of(outline_, corner);
+  if (!at.cone.lower.is_of_a) return lower_first ? b.edge_before : b.edge_behind;
+  return 2 * outline_.size() + 2 * corner + (lower_first ? 1 : 0);
+}
+
+/// The feature that a vertex deep in the outline is behind, of a corner that its outline overlaps: an end of
+/// the directions that both corners push in, which need not be the nearest edge. \param found the nearest
+/// edge
+Index FeatureRegions::behind_corner(Index found, double depth) const {
+  constexpr double far = 64.0;  // depths, as in is_near_corner()
+  if (!outline_.is_edge(found) || of_vertex_.size() == 0) return found;
+  const Index corner = nearer_end(outline_, found, place_);
+  if (!((place_ - outline_.vertices[corner]).squaredNorm() <= far * far * depth * depth)) return found;
+  const std::optional<Meeting> at = meeting_at(corner);
+  if (!at) return found;
+  if (const std::optional<Index> of_one = edge_of_one(corner, *at)) return *of_one;
+  const SharpCorner b = SharpCorner::of(outline_, corner);
+  return at->cone.lower.is_of_a ? b.edge_behind : b.edge_before;
 }
 
 /// The edge of the vertex's outline of such a feature.
@@ -135,7 +156,12 @@ GapPoint FeatureRegions::gap(const ConvexOutline& point, Index feature) const {
 /// end of the edge, so that the corner stands before an edge of the other outline, or that separates them
 /// more.
 Index FeatureRegions::touching_at(Index corner, Index found) const {
-  if (const std::optional<Index> of_one = edge_of_one(corner)) return *of_one;
+  if (const std::optional<Meeting> at = meeting_at(corner); at && at->cone.is_of_one()) {
+    const bool meet = std::max(std::abs(at->lower.gap), std::abs(at->upper.gap)) <= lengths_.corner &&
+                      std::min(at->lower.within, at->upper.within) >= -lengths_.corner;
+    if (meet) return *edge_of_one(corner, *at);
+    if (at->cone.lower.is_of_a) return corner;
+  }
   if (outline_.size() == 1) return corner;
   const Index edge = edge_at(corner, found);
   if (chain_ || margin(edge).value >= -lengths_.corner) return edge;

@@ -9,8 +9,8 @@
 ///
 /// Two sharp corners do not touch each other: whatever overlaps does so at an edge of either. A corner that
 /// stands at the end of an edge to rounding, or has left it by a little, stands before that edge; else its
-/// normal would be that between two places that are the same. Where two corners meet in one place, the pair of
-/// either corner has the normal of one end of their common cone (corner_meeting.h), of an edge of its own
+/// normal would be that between two places that are the same. Where two corners meet in one place, the pair
+/// of either corner has the normal of one end of their common cone (corner_meeting.h), of an edge of its own
 /// outline or, where both ends are edges of the other one, of an edge of that.
 
 #include <carom/contact/detection/corner_meeting.h>
@@ -24,9 +24,9 @@
 
 namespace carom {
 
-/// The features of the outline of a pair, as ConvexOutline counts them, seen from the vertex of the pair. With n
-/// vertices, corner i that stands before an edge of the vertex's own outline is feature 2 n + 2 i, if the edge
-/// ends at the vertex, or 2 n + 2 i + 1, if it begins there.
+/// The features of the outline of a pair, as ConvexOutline counts them, seen from the vertex of the pair.
+/// With n vertices, corner i that stands before an edge of the vertex's own outline is feature 2 n + 2 i, if
+/// the edge ends at the vertex, or 2 n + 2 i + 1, if it begins there.
 class CAROM_API FeatureRegions {
 public:
   /// \param pair what it is a view of must outlive it
@@ -53,7 +53,8 @@ public:
   [[nodiscard]] double border() const { return sharp_ ? lengths_.corner_leaves() : lengths_.past_border(); }
   /// Margin of a feature.
   [[nodiscard]] FeatureMargin margin(Index feature) const;
-  /// The gap at a feature, in the frame of the outline, of which the vertex is a. \param point the vertex, there
+  /// The gap at a feature, in the frame of the outline, of which the vertex is a. \param point the vertex,
+  /// there
   [[nodiscard]] GapPoint gap(const ConvexOutline& point, Index feature) const;
   /// Distance within which the gap is smooth, if the feature is the nearest one [m].
   [[nodiscard]] double clearance(Index feature) const;
@@ -63,7 +64,13 @@ private:
   [[nodiscard]] Index touching_at(Index corner, Index found) const;
   [[nodiscard]] Index edge_at(Index corner, Index found) const;
   [[nodiscard]] SharpCorner corner_of_vertex() const;
-  [[nodiscard]] std::optional<Index> edge_of_one(Index corner) const;
+  struct Meeting {
+    CommonCone cone;  // a is the outline of the vertex
+    GapPoint lower, upper;
+  };
+  [[nodiscard]] std::optional<Meeting> meeting_at(Index corner) const;
+  [[nodiscard]] std::optional<Index> edge_of_one(Index corner, const Meeting& at) const;
+  [[nodiscard]] Index behind_corner(Index found, double depth) const;
   [[nodiscard]] bool is_of_vertex(Index feature) const { return feature >= 2 * outline_.size(); }
   [[nodiscard]] Index corner_of(Index feature) const { return (feature - 2 * outline_.size()) / 2; }
   [[nodiscard]] ConeEnd own_edge(Index feature) const;

@@ -19,7 +19,7 @@ struct PieceContacts::Search {
   const BodyOutline& outline;
   ConvexOutline placed;  // in the frame of the family
   const GroundMotion* motion;
-  PlaneFrame frame;   // of the family
+  PlaneFrame frame;  // of the family
   PlaneFrame of_body;
   double margin;      // of gaps, those of lasting contacts included
   std::size_t first;  // contact of the outline
@@ -137,21 +137,27 @@ void PieceContacts::find_in(const Family& family, const BodyOutline& outline, co
 
 void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const {
   const Index on_ground = pieces_.outline(piece);
-  if (!may_touch(search.outline, pieces_.outlines()[on_ground])) return;
+  const BodyOutline& a = search.outline;
+  const GroundOutline& b = pieces_.outlines()[on_ground];
+  if (!may_touch(a, b)) return;
   std::array<GapPoint, 2> found;
   const int count = pieces_.find(piece, search.placed, search.margin, found);
-  for (const GapPoint& gap : std::span(found).first(static_cast<std::size_t>(count))) {
-    add(search, on_ground, gap, search.query.margin, out);
-    const std::optional<GapPoint> second = second_at_corner(search, on_ground, gap);
-    if (!second) continue;
-    const bool touches = gap.gap <= search.query.margin;
-    add(search, on_ground, *second, search.query.margin + (touches ? pieces_.lengths().corner : 0.0), out);
-  }
+  if (count == 0) return;
+  const std::optional<GapPoint> second = second_at_corner(search, on_ground, found[0]);
+  // Where one of two corners that meet touches, so does the other one.
+  const bool both = second && std::min(found[0].gap, second->gap) <= search.query.margin;
+  const double most = search.query.margin + (both ? pieces_.lengths().corner : 0.0);
+  add(search, on_ground, found[0], most, out);
+  if (second) add(search, on_ground, *second, most, out);
+  // One of the same name as the second is of the same corner.
+  if (count > 1 && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
+    add(search, on_ground, found[1], search.query.margin, out);
 }
 
-/// The other contact where a sharp corner of a body meets one of the ground.
+/// The other contact where a sharp corner of a body meets one of the ground. \param first changes if the
+/// other one comes first
 std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, Index on_ground,
-                                                        const GapPoint& first) const {
+                                                        GapPoint& first) const {
   const GroundOutline& b = pieces_.outlines()[on_ground];
   const ConvexOutline &of_a = search.placed, of_b = pieces_.view(on_ground);
   const double same_place = pieces_.lengths().corner;
@@ -174,8 +180,8 @@ std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, In
   return second_contact(first, meeting);
 }
 
-/// Appends a contact that is closed, or was and may still be. \param local its gap, in the frame of the family
-/// \param most largest gap of what is closed [m]
+/// Appends a contact that is closed, or was and may still be. \param local its gap, in the frame of the
+/// family \param most largest gap of what is closed [m]
 void PieceContacts::add(const Search& search, Index on_ground, const GapPoint& local, double most,
                         std::vector<Constraint>& out) const {
   const ContactQuery& query = search.query;
