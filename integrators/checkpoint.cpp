@@ -4,6 +4,7 @@
 #include <carom/core/whole_file.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/checkpoint_bytes.h>
+#include <carom/integrators/checkpoint_keys.h>
 #include <carom/integrators/checkpoint_statistics.h>
 
 #include <algorithm>
@@ -33,22 +34,6 @@ int take_version(std::string_view& text) {
   return 0;
 }
 
-void add(CheckpointWriter& out, const FeatureKey& key) {
-  out.add(std::uint64_t{static_cast<std::uint8_t>(key.owner)});
-  out.add(std::uint64_t{key.serial});
-  out.add(std::uint64_t{key.feature});
-}
-
-void get(CheckpointReader& in, FeatureKey& key) {
-  std::uint64_t owner = 0, serial = 0, feature = 0;
-  in.get(owner);
-  in.get(serial);
-  in.get(feature);
-  if (owner > static_cast<std::uint64_t>(FeatureKey::Owner::joint))
-    in.damaged("a contact has an unknown owner");
-  key = {static_cast<FeatureKey::Owner>(owner), static_cast<Index>(serial), static_cast<Index>(feature)};
-}
-
 void add(CheckpointWriter& out, const JointHistory& history) {
   out.add(history.step);
   out.add(std::uint64_t{history.known.size()});
@@ -63,8 +48,7 @@ void add(CheckpointWriter& out, const ContactHistory& history) {
   out.add(history.step);
   out.add(std::uint64_t{history.starts.size()});
   for (std::size_t i = 0; i < history.starts.size(); ++i) {
-    add(out, history.contacts.keys()[i].a);
-    add(out, history.contacts.keys()[i].b);
+    add(out, history.contacts.keys()[i]);
     for (const double impulse : history.starts[i].impulse) out.add(impulse);
     out.add(history.starts[i].kept);
   }
@@ -125,8 +109,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   out.add(companion.grid_steps);
   out.add(std::uint64_t{companion.modes.size()});
   for (const auto& [key, mode] : companion.modes) {
-    add(out, key.a);
-    add(out, key.b);
+    add(out, key);
     out.add(std::uint64_t{static_cast<std::uint8_t>(mode)});
   }
   out.add(std::uint64_t{companion.rhythms.size()});
@@ -138,6 +121,9 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   add(out, companion.joints);
   add(out, companion.contacts);
   out.add(companion.steps_owed);
+  out.add(std::uint64_t{companion.closings.all_free});
+  out.add(std::uint64_t{companion.closings.free.size()});
+  for (const ConstraintKey& key : companion.closings.free) add(out, key);
   const std::string_view body(out.bytes().data(), out.bytes().size());
   CheckpointWriter end;
   end.add(checksum(body));
@@ -199,13 +185,20 @@ void read_mean_loads(CheckpointReader& in, std::size_t velocities, PresentLoads&
 void read_modes(CheckpointReader& in, Companion& companion) {
   companion.modes.resize(in.count());
   for (auto& [key, mode] : companion.modes) {
-    get(in, key.a);
-    get(in, key.b);
+    get(in, key);
     std::uint64_t number = 0;
     in.get(number);
     if (number > static_cast<std::uint64_t>(ContactMode::slip)) in.damaged("a contact has an unknown mode");
     mode = static_cast<ContactMode>(number);
   }
+}
+
+void read_closings(CheckpointReader& in, ClosingNotes& closings) {
+  std::uint64_t all = 0;
+  in.get(all);
+  closings.all_free = all != 0;
+  closings.free.resize(in.count());
+  for (ConstraintKey& key : closings.free) get(in, key);
 }
 
 void read_rhythms(CheckpointReader& in, std::vector<Rhythm>& rhythms) {
@@ -247,8 +240,7 @@ void read_contacts(CheckpointReader& in, int version, ContactHistory& history) {
   for (std::size_t left = in.count(); left > 0; --left) {
     ConstraintKey key;
     SweepStart start;
-    get(in, key.a);
-    get(in, key.b);
+    get(in, key);
     for (double& number : start.impulse) in.get(number);
     if (version >= 12) in.get(start.kept);
     if (start.kept < 0 || start.kept > SweepStart::most_kept) {
@@ -338,6 +330,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
     read_contacts(in, version, other.contacts);
   }
   if (version >= 11) in.get(other.steps_owed);
+  if (version >= 14) read_closings(in, other.closings);
   in.finish();
   demand_rhythms(path, other.rhythms, companion.rhythms);
   state = std::move(read);

@@ -45,6 +45,7 @@ struct Simulation::Impl {
     companion.joints.clear();
     companion.iterations.clear();
     companion.steps_owed = 0;
+    companion.closings = {};
     companion.loads.valid = false;
     if (model->machines.driver) model->machines.driver->forget();
   }

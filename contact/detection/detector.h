@@ -44,6 +44,10 @@ public:
   void demand_continuous(const GroundPlaces& before, const GroundPlaces& after) const {
     ground_.shapes().demand_continuous(before, after);
   }
+  /// As GroundShapes::list_jumps().
+  void list_jumps(double from, double to, std::vector<GroundJump>& out) const {
+    ground_.shapes().list_jumps(from, to, out);
+  }
   /// As GroundShapes::discontinuities().
   [[nodiscard]] std::vector<Discontinuity> discontinuities() const {
     return ground_.shapes().discontinuities();

@@ -24,7 +24,11 @@ GroundShapes::GroundShapes(const System& system) : system_(&system) {
     check_pieces({system.name(ObstacleId{serial, system.token()}), system}, pieces);
     shapes_.push_back({&kind, place.slot, serial, moving, kind.surface_speed(place.slot), !pieces.empty(),
                        kind.is_flat(place.slot)});
+    std::vector<double> times;
+    if (moving != none) kind.discontinuity_times(place.slot, times);
+    for (const double time : times) breaks_.emplace_back(time, size() - 1);
   }
+  std::sort(breaks_.begin(), breaks_.end());
 }
 
 Index GroundShapes::find(Index serial) const {
@@ -97,6 +101,23 @@ void GroundShapes::demand_continuous(const GroundPlaces& before, const GroundPla
       fail_rate(system_->name(id(shape)), rate->of_angle ? "spin" : "velocity",
                 rate->of_angle ? "angle" : "displacement", rate->of_angle ? "rad/s" : "m/s", *rate);
     }
+  }
+}
+
+void GroundShapes::list_jumps(double from, double to, std::vector<GroundJump>& out) const {
+  out.clear();
+  const auto is_until = [](double time, const std::pair<double, Index>& of) { return time < of.first; };
+  auto at = std::upper_bound(breaks_.begin(), breaks_.end(), from, is_until);
+  for (; at != breaks_.end() && at->first <= to; ++at) {
+    const double time = at->first;
+    const GroundMotion after = motion(at->second, time),
+                       before = motion(at->second, std::nextafter(time, from));
+    GroundJump jump{time, shapes_[at->second].serial, {}, {}, after.spin - before.spin};
+    for (std::size_t i = 0; i < jump.point.size(); ++i) {
+      jump.point[i] = after.point[i];
+      jump.velocity[i] = after.velocity[i] - before.velocity[i];
+    }
+    out.push_back(jump);
   }
 }
 

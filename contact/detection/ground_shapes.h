@@ -4,6 +4,7 @@
 /// Shapes on ground of a model: where they are at a time, and how far from them points of bodies are.
 
 #include <carom/contact/detection/gap_point_half_space.h>
+#include <carom/contact/detection/ground_jump.h>
 #include <carom/core/constraint.h>
 #include <carom/core/discontinuity.h>
 #include <carom/core/export.h>
@@ -11,6 +12,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -82,6 +84,8 @@ public:
   /// Demands that no shape jumps between two times. Throws SolverError naming the shape, the time, and by how
   /// much it jumps (core/law_jump.h).
   void demand_continuous(const GroundPlaces& before, const GroundPlaces& after) const;
+  /// Lists the jumps of velocities behind one time and up to another, ascending [s]. Throws as motion().
+  void list_jumps(double from, double to, std::vector<GroundJump>& out) const;
   /// Times at which motions are not smooth, in the order of shapes. Made at each call.
   [[nodiscard]] std::vector<Discontinuity> discontinuities() const;
 
@@ -122,7 +126,8 @@ private:
 
   const System* system_;
   std::vector<Shape> shapes_;
-  Index moving_ = 0;  // shapes that move
+  Index moving_ = 0;                              // shapes that move
+  std::vector<std::pair<double, Index>> breaks_;  // times at which motions are not smooth, of which shape
 };
 
 }  // namespace carom

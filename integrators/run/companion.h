@@ -43,6 +43,15 @@ struct Rhythm {
   [[nodiscard]] double due() const { return start + static_cast<double>(fired + 1) * interval; }
 };
 
+/// Contacts that close where the next step begins, of those that are slower than the capture speed, or are
+/// more than a step may have (TimeStepping::impacts, closing_search.h).
+struct ClosingNotes {
+  /// Nothing is known of the way here: all that approach rebound.
+  bool all_free = true;
+  std::vector<ConstraintKey> free;  ///< slow ones that nothing presses: they rebound
+  std::vector<ConstraintKey> cut;   ///< beyond TimeStepping::most_impacts: they do not
+};
+
 /// With the state, all that a checkpoint holds (but `loads` where they follow from the state).
 struct Companion {
   EnergyLedger ledger;                 ///< the energy ledger
@@ -57,6 +66,7 @@ struct Companion {
   std::int64_t grid_steps = 0;  ///< n
   double next_step = 0.0;       ///< of step control; 0: as described [s]
   std::int64_t steps_owed = 0;  ///< that were made to find closings, beyond PartedSteps::steps_per_step
+  ClosingNotes closings;        ///< contacts that close now
   PresentLoads loads;           ///< at the state
   ContactModes modes;           ///< contacts of the last step, by key
   ContactHistory contacts;      ///< impulses of the last step in large islands

@@ -95,7 +95,7 @@ struct TimeStepping {
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
   /// on terms of the energy ledger, and whether friction in joints that depends on their force takes the
   /// restitution of the contact; and where impacts are located, which end: a contact that closes more slowly
-  /// does not rebound (e = 0); where they are not, how far contacts that pushed in the step before may be
+  /// does not rebound (e = 0), if loads bring it back within 1,000 steps; where they are not, how far contacts that pushed in the step before may be
   /// open and last: this times the step. On nothing else of the motion [m/s]. Of a limit of an angle: its
   /// rate times the arm k_a k_b/sqrt(k_a^2 + k_b^2), radii of gyration, up to a power of two.
   double capture_speed = 1e-2;
@@ -104,7 +104,8 @@ struct TimeStepping {
   ImpactTimes impacts = ImpactTimes::at_step_start;  ///< when within a step bodies are hit
   /// Of impacts that are located: the most of one body in one step, >= 1, and as many slow ones. After them
   /// contacts that close do not rebound (ImpactNote::cut_sequence), and after as many of these act to the end
-  /// of the step; so the step ends although bounces may accumulate in it.
+  /// of the step; so the step ends although bounces may accumulate in it. ContactCounts::cut_sequences counts
+  /// what is cut.
   int most_impacts = 10;
 
   ForceRule force_rule = ForceRule::trapezoidal;  ///< impulse of the force elements

@@ -10,10 +10,15 @@
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
+#include <carom/core/function_ref.h>
 #include <carom/core/state.h>
+#include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/capture_rule.h>
 #include <carom/integrators/time_stepping/gap_rounding.h>
 
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <utility>
@@ -39,7 +44,7 @@ public:
       : look_(assembly, detector),
         most_impacts_(options.most_impacts),
         rounding_(gap_rounding(assembly, options)),
-        capture_speed_(options.capture_speed) {}
+        capture_(CaptureRule::of(assembly, options)) {}
 
   /// Forgets what has closed: a step begins.
   void begin_step() { closed_.clear(); }
@@ -51,16 +56,27 @@ public:
   [[nodiscard]] bool is_late(const Closing& closing) const { return closing.gap < -rounding_; }
   /// True if it ends when the contact closes.
   [[nodiscard]] bool is_now(const Closing& closing) const { return closing.gap <= 0.0 && !is_late(closing); }
-  /// Counts a closing at which a part ends. One contact has as many of them, fast and slow ones, as
-  /// TimeStepping::most_impacts in a step; after these it acts from the next step on.
-  void count(const Closing& closing);
+  /// True if a contact has closed in the part that was looked at last, and nobody is to look for it any more.
+  [[nodiscard]] bool any_given_up() const { return given_up_; }
+  /// Says which of the contacts that close at the end looked at last rebound although they are slow, and
+  /// which do not although they are fast. \param hit at which the part ends; none at the end of a step, where
+  /// nothing is counted: else one contact rebounds as often as TimeStepping::most_impacts says in a step, and
+  /// closes without as often; after these it acts from the next step on. Where one does not rebound any more
+  /// the others of its bodies may as often again: a light body between two heavy ones stays with one of them
+  /// \param accelerations of all bodies up to there, over all velocities; asked for slow contacts alone
+  void note(const State& end, const Closing* hit, FunctionRef<const std::vector<double>&()> accelerations,
+            ClosingNotes& out);
 
 private:
   struct Count {
     ConstraintKey key;
-    int fast = 0, slow = 0;
+    std::array<Constraint::Block, std::size_t{Constraint::max_bodies}> bodies;
+    int rebounds = 0, others = 0;
   };
-  [[nodiscard]] bool may_close(const Constraint& contact, Modes acted) const;
+  [[nodiscard]] static bool acts(const Constraint& contact, Modes acted);
+  [[nodiscard]] bool is_given_up(const ConstraintKey& key) const;
+  void count(const Constraint& contact, bool rebounds, ClosingNotes& out);
+  void allow_more(const Constraint& contact);
   [[nodiscard]] bool was_open(const Constraint& contact, const State& start);
   [[nodiscard]] double gap_at_start(const Constraint& contact, double reach) const;
   [[nodiscard]] double gap_of_vertex(const Constraint& contact, const State& start);
@@ -68,8 +84,9 @@ private:
   ContactLook look_;
   int most_impacts_;
   double rounding_;
-  double capture_speed_;
-  std::vector<Constraint> at_start_, at_end_;
+  CaptureRule capture_;
+  bool given_up_ = false;  // any_given_up()
+  std::vector<Constraint> at_start_, at_end_, left_out_;
   std::vector<Count> closed_;
   double near_ = 0.0;  // gaps that are looked at, for the parts of one search [m]
 };

@@ -47,7 +47,8 @@ struct ContactAnswer {
 
 /// Common to all contacts and limits that are booked together.
 struct CommonAnswer {
-  double time;  // [s]
+  double time;                        // [s]
+  std::span<const GroundJump> jumps;  // of velocities of ground shapes, before the impulses
   Outcome outcome;
   std::string_view solver;
   double restitution_factor;
@@ -63,8 +64,9 @@ public:
 
   void book(const Constraint& at, const ContactAnswer& answer, double capture_speed, BookedWork& work) const {
     result_.fetch_records(ahead);
+    const std::array<double, 3> jump = jump_of(at);
     const double* const before = answer.before;
-    const bool impact = before[0] < -capture_speed;
+    const bool impact = before[0] - jump[0] < -capture_speed;
     work.impact = work.impact || impact;
     ContactTally& tally = result_.tally;
     tally.impacts += impact ? 1 : 0;
@@ -76,7 +78,7 @@ public:
     entry.impact = impact;
     write_place(at, entry);
     write_answer(answer, entry);
-    book_rows(at, before, answer.impulses, work.sum, entry);
+    book_rows(at, {before, jump.data()}, answer.impulses, work.sum, entry);
     if (at.type == ConstraintType::limit) tell_in_coordinate(at, entry);
   }
 
@@ -112,17 +114,30 @@ private:
     entry.cut_sequence = entry.worst = false;
   }
 
-  /// Works of its rows. \param before,impulses by row
-  void book_rows(const Constraint& at, const double* before, const double* impulses, ImpulseWork& sum,
+  /// Velocities along rows before an impulse, and by how much the ground has jumped behind these.
+  struct Before {
+    const double* velocity;
+    const double* jump;
+  };
+
+  [[nodiscard]] std::array<double, 3> jump_of(const Constraint& at) const {
+    if (common_.jumps.empty()) return {};
+    const BodySlot body = assembly_.layout()->bodies()[at.body()];
+    return jump_along_rows(common_.jumps, at, in_.start.q.data() + body.q);
+  }
+
+  /// Works of its rows. \param impulses by row
+  void book_rows(const Constraint& at, const Before& before, const double* impulses, ImpulseWork& sum,
                  ContactRecord& entry) const {
     const std::array<double, 3> with = velocities_after(at, after_);
     ImpulseWork works = sum;
     double all = 0.0, on_surface = 0.0;
     const auto book_row = [&](std::size_t i) {  // a loop over two or three costs more than they do
-      const double impulse = impulses[i], gamma = before[i];
+      const double impulse = impulses[i], gamma = before.velocity[i] - before.jump[i];
       const double work = works.add(impulse, gamma, with[i]);
       all += work;
-      on_surface += impulse_work(impulse, at.surface_velocity[i], at.surface_velocity_after[i]);
+      on_surface +=
+          impulse_work(impulse, at.surface_velocity[i] + before.jump[i], at.surface_velocity_after[i]);
       entry.velocity_before[i] = gamma;
       entry.velocity_after[i] = with[i];
       entry.impulse[i] = impulse;
@@ -190,8 +205,9 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   const bool is_swept = problem.problem().is_factored();
   const bool keeps_starts = is_swept || problem.constraints().size() > 1;  // one contact is solved as fast
   const ContactReport& report = problem.report();
-  const ContactBooking booking(
-      *assembly_, after, {time, report.outcome, report.solver, problem.restitution_factor()}, in, result_);
+  const ContactBooking booking(*assembly_, after,
+                               {time, jumps_, report.outcome, report.solver, problem.restitution_factor()},
+                               in, result_);
   const std::span<const Constraint> constraints = problem.constraints();
   const std::span<const ContactMode> modes = problem.modes();
   const double *const before = problem.before().data(), *const impulses = problem.impulses().data();
@@ -201,7 +217,7 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     const auto row = static_cast<std::size_t>(problem.first_row(contact));
     if (keeps_starts) starts.keep(at, impulses + row);
     if (at.type == ConstraintType::rolling) {
-      book_rolling(problem, contact, after, work.sum);
+      book_rolling(problem, contact, after, in, work.sum);
     } else if (at.has_dry_friction()) {
       book_joint_friction(problem, contact, after, trial, work.sum);
     } else {
@@ -226,7 +242,8 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
 void StepBalance::book_lone(const LoneContacts& contacts, const double* after, const StepInput& in,
                             const StepTrial& trial, FunctionRef<bool(Index body)> leaves_out) {
   constexpr std::string_view solver = solver_names[static_cast<std::size_t>(SolverId::single_contact)];
-  const ContactBooking booking(*assembly_, after, {in.end_time, Outcome::solved, solver, 1.0}, in, result_);
+  const ContactBooking booking(*assembly_, after, {in.end_time, jumps_, Outcome::solved, solver, 1.0}, in,
+                               result_);
   const std::span<const Constraint> constraints = contacts.constraints();
   double worst = result_.tally.worst_residual;
   for (std::size_t i = 0; i < constraints.size(); ++i) {
@@ -276,17 +293,22 @@ void StepBalance::tell_cut(std::size_t records) {
 
 /// Rolling resistance, in the record of the contact before it.
 void StepBalance::book_rolling(const IslandProblem& problem, std::size_t contact, const double* after,
-                               ImpulseWork& sum) {
+                               const StepInput& in, ImpulseWork& sum) {
   const Constraint& at = problem.constraints()[contact];
   const auto row = static_cast<std::size_t>(problem.first_row(contact));
   const double moment = problem.impulses()[row];
-  const double work = sum.add(moment, problem.before()[row], at.velocity_after(0, after));
+  double jump = 0.0;
+  if (!jumps_.empty()) {
+    const BodySlot body = assembly_->layout()->bodies()[at.body()];
+    jump = jump_along_rows(jumps_, at, in.start.q.data() + body.q)[0];
+  }
+  const double work = sum.add(moment, problem.before()[row] - jump, at.velocity_after(0, after));
   ContactRecord& entry = result_.records().back();
   entry.rolling_moment = at.of_joint.length * moment;
   entry.contact_work += work;
   result_.flows[EnergyFlow::rolling] -= work;
   result_.flows[EnergyFlow::external] +=
-      impulse_work(moment, at.surface_velocity[0], at.surface_velocity_after[0]);
+      impulse_work(moment, at.surface_velocity[0] + jump, at.surface_velocity_after[0]);
 }
 
 /// In an impact a gain is one of the law. In lasting contact the loads of the step take part, and a gain is

@@ -11,6 +11,14 @@ namespace {
 
 constexpr double together = 1e-8;  // shares of a step that differ by less are one instant
 
+/// Rate of the normal velocity of a contact of a body in a flight, with the contacts that take part in it.
+double acceleration_along(const Constraint& contact, const LocatedBody& at, const MotionPhase& flight) {
+  const double time = (flight.end - flight.begin) * at.in.step;
+  double change = 0.0;
+  for (Index i = 0; i < at.slot.v_size; ++i) change += contact.row(0)[i] * (flight.v1[i] - flight.v0[i]);
+  return change / time + contact.drift[0];
+}
+
 /// A gap where it was looked at.
 struct SeenGap {
   double share;  // of the step
@@ -42,7 +50,7 @@ std::span<const FlightClosing> FlightClosings::find(const LocatedBody& at, const
                                                     std::span<const ConstraintKey> known, FlightLook& look) {
   known_.assign(known.begin(), known.end());
   list_.clear();
-  add(at, flight.end, true, look.find(at, flight.end, 0.0, false));
+  add(at, flight, flight.end, look.find(at, flight.end, 0.0, false));
   if (list_.empty()) return list_;
   // Those that are found on the way are looked for too.
   for (std::size_t i = 0; i < list_.size(); ++i) locate(at, flight, i, look);
@@ -57,8 +65,9 @@ std::span<const FlightClosing> FlightClosings::find(const LocatedBody& at, const
 
 /// Adds contacts that are not open any more and were not known. At the end of a flight those that touch and
 /// approach too; on the way only what goes deeper: what was hit before may still be leaving.
-void FlightClosings::add(const LocatedBody& at, double share, bool at_end,
+void FlightClosings::add(const LocatedBody& at, const MotionPhase& flight, double share,
                          const std::vector<Constraint>& found) {
+  const bool at_end = share == flight.end;
   const double* const v = at.trial.end.v.data();
   for (const Constraint& contact : found) {
     if (std::find(known_.begin(), known_.end(), contact.key) != known_.end()) continue;
@@ -67,7 +76,8 @@ void FlightClosings::add(const LocatedBody& at, double share, bool at_end,
     if (!(at_end ? inside || approaches : inside && approaches)) continue;
     const auto is_it = [&](const FlightClosing& closing) { return closing.key == contact.key; };
     if (std::any_of(list_.begin(), list_.end(), is_it)) continue;
-    list_.push_back({contact.key, contact.gap, rate, contact.speed(0, v), share, false});
+    list_.push_back({contact.key, contact.gap, rate, acceleration_along(contact, at, flight),
+                     contact.speed(0, v), share, false});
   }
 }
 
@@ -94,13 +104,14 @@ void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, st
     share = next;
     FlightLook::go(at, flight, share);
     const std::vector<Constraint>& near = look.find(at, share, margin, false);
-    add(at, share, false, near);
+    add(at, flight, share, near);
     const auto is_it = [&](const Constraint& contact) { return contact.key == closing.key; };
     const auto contact = std::find_if(near.begin(), near.end(), is_it);
     found = contact != near.end();
     if (found) {
       before = last;
       last = {share, contact->gap, at.in.step * contact->normal_velocity(at.trial.end.v.data())};
+      closing.acceleration = acceleration_along(*contact, at, flight);
     }
     if (found && last.gap < 0.0) {
       closed = share;
@@ -111,7 +122,9 @@ void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, st
     }
   }
   list_[which].share = found ? share : closed;
-  list_[which].fast = (found ? last.rate / at.in.step : closing.rate) < -at.rules.capture_speed;
+  const double rate = found ? last.rate / at.in.step : closing.rate;
+  const CaptureRule& capture = at.rules.capture;
+  list_[which].rebounds = capture.is_fast(rate) || capture.is_free(rate, closing.acceleration);
 }
 
 }  // namespace carom

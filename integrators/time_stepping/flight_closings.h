@@ -20,10 +20,11 @@ namespace carom {
 /// A contact that closes in a flight.
 struct FlightClosing {
   ConstraintKey key;
-  double gap, rate;  ///< where it was found [m, m/s]
-  double speed;      ///< size of what the rate is the sum of [m/s]
-  double share;      ///< of the step, where it was found; then when it closes
-  bool fast;         ///< it closes faster than the capture speed
+  double gap, rate;     ///< where it was found [m, m/s]
+  double acceleration;  ///< of the gap there, without the contact [m/s^2]
+  double speed;         ///< size of what the rate is the sum of [m/s]
+  double share;         ///< of the step, where it was found; then when it closes
+  bool rebounds;        ///< it closes fast, or nothing presses it (CaptureRule)
 };
 
 /// Finds what closes first. Keeps memory.
@@ -35,7 +36,8 @@ public:
                                                     std::span<const ConstraintKey> known, FlightLook& look);
 
 private:
-  void add(const LocatedBody& at, double share, bool at_end, const std::vector<Constraint>& found);
+  void add(const LocatedBody& at, const MotionPhase& flight, double share,
+           const std::vector<Constraint>& found);
   void locate(const LocatedBody& at, const MotionPhase& flight, std::size_t which, FlightLook& look);
 
   std::vector<ConstraintKey> known_;

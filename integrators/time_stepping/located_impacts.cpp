@@ -5,6 +5,7 @@
 #include <carom/integrators/time_stepping/located_impacts.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace carom {
@@ -17,14 +18,35 @@ bool follow_newton(const Detector& detector, const ImpactRules& rules) {
          !has_other_impact_law(detector) && !resists_rolling(detector);
 }
 
-/// True if a contact closes faster than a speed at the start of a step.
-bool hits(const StepInput& in, const Constraint& contact, double faster_than) {
-  return contact.normal_velocity(in.start.v.data()) < -faster_than;
+/// Acceleration of the gap of a contact of one body by the loads at the start of a step [m/s^2].
+double acceleration_by_loads(const StepInput& in, const Constraint& contact) {
+  const BodySlot slot = in.assembly.layout()->bodies()[contact.body()];
+  std::array<double, 6> acceleration{};
+  in.assembly.body_kinds()[slot.kind]->apply_inverse_mass(
+      {slot.slot, slot.slot + 1}, in.companion.loads.total.data() + slot.v, acceleration.data());
+  double sum = contact.drift[0];
+  for (Index i = 0; i < slot.v_size; ++i) sum += contact.row(0)[i] * acceleration[i];
+  return sum;
+}
+
+/// True if a contact hits its body at the start of a step and rebounds: it is fast, or it has not acted so
+/// far and nothing presses it.
+bool hits(const StepInput& in, const Constraint& contact, const CaptureRule& rule) {
+  const double rate = contact.normal_velocity(in.start.v.data());
+  if (rule.is_fast(rate)) return true;
+  if (!(rate < -rule.slowest) || contact.bodies != 1) return false;
+  const ContactModes& modes = in.companion.modes;
+  if (std::any_of(modes.begin(), modes.end(), [&](const auto& entry) {
+        return entry.first == contact.key && entry.second != ContactMode::open;
+      })) {
+    return false;
+  }
+  return rule.is_free(rate, acceleration_by_loads(in, contact));
 }
 
 /// True if a contact hits its body at the start of a step, or holds it where it turns.
 bool acts_within(const StepInput& in, const Constraint& contact, const LocatedRules& rules) {
-  return contact.turns(in.step, rules.turning) || hits(in, contact, rules.capture_speed);
+  return contact.turns(in.step, rules.turning) || hits(in, contact, rules.capture);
 }
 
 /// How many contacts of one body each some bodies have.
@@ -45,7 +67,7 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
       jumps_(assembly),
       on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
       of_one_piece_(detector.pieces().empty() && detector.joints().empty()),
-      rules_{options.most_impacts, options.capture_speed, gap_rounding(assembly, options),
+      rules_{options.most_impacts, CaptureRule::of(assembly, options), gap_rounding(assembly, options),
              turning_rounding(options), options.impact_rules.refuse_jams},
       budget_(budget_of(options)) {}
 
@@ -175,7 +197,7 @@ void LocatedImpacts::take_up(const StepInput& in, Index body, StepTrial& trial) 
   trial.expect_impulses();
   order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(at), {body, in_use_});
   const bool struck = std::any_of(island_.own.begin(), island_.own.end(), [&](const Constraint& contact) {
-    return hits(in, contact, rules_.capture_speed);
+    return hits(in, contact, rules_.capture);
   });
   motions_[in_use_++].begin(body, island_.own, struck);
 }

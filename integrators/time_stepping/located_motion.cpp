@@ -59,6 +59,7 @@ bool LocatedMotion::advance(const LocatedStep& step) {
 bool LocatedMotion::move(const LocatedBody& at) {
   int impacts = 0, captures = 0;
   double now = 0.0, captured = -1.0;
+  bool given_up = false;  // contacts that would rebound act to the end of the step
   if (struck_) {
     if (!strike(at, now, true)) return false;
     ++impacts;
@@ -74,6 +75,7 @@ bool LocatedMotion::move(const LocatedBody& at) {
     if (!fly(at, flight)) return false;
     const std::span<const FlightClosing> closing = closings_.find(at, flight, closed_, look_);
     if (closing.empty()) {
+      flight.cut = given_up;
       FlightLook::rotate(at);
       return true;
     }
@@ -95,10 +97,13 @@ bool LocatedMotion::move(const LocatedBody& at) {
     }
     now = hit;
     const bool fast =
-        std::any_of(closing.begin(), closing.end(), [](const FlightClosing& c) { return c.fast; });
+        std::any_of(closing.begin(), closing.end(), [](const FlightClosing& c) { return c.rebounds; });
     const bool rebounds = fast && impacts < at.rules.most_impacts;
     int& count = rebounds ? impacts : captures;
-    if (count == at.rules.most_impacts || (!rebounds && now == captured)) continue;
+    if (count == at.rules.most_impacts || (!rebounds && now == captured)) {
+      given_up = given_up || fast;
+      continue;
+    }
     if (!strike(at, now, rebounds)) return false;
     phases_[used_ - 1].cut = fast && !rebounds;
     ++count;

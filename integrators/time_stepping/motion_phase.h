@@ -7,6 +7,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/core/body_kind.h>
 #include <carom/core/export.h>
+#include <carom/integrators/time_stepping/capture_rule.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
@@ -75,11 +76,11 @@ struct MotionPhase {
 
 /// Numbers that follow from the options.
 struct LocatedRules {
-  int most_impacts;      ///< of one body that are fast, >= 1
-  double capture_speed;  ///< a contact that closes more slowly does not rebound [m/s]
-  double gap;            ///< gap_rounding() [m]
-  double turning;        ///< turning_rounding() [m]
-  bool refuse_jams;      ///< contacts that jam are an error
+  int most_impacts;     ///< of one body that rebound, >= 1
+  CaptureRule capture;  ///< which contacts do not rebound
+  double gap;           ///< gap_rounding() [m]
+  double turning;       ///< turning_rounding() [m]
+  bool refuse_jams;     ///< contacts that jam are an error
 };
 
 /// A step that bodies are moved through.

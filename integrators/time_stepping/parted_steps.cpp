@@ -12,31 +12,26 @@ namespace carom {
 
 namespace {
 
-[[noreturn]] void fail(const Detector& detector, const ConstraintKey& key, const char* option, double time,
-                       double step) {
-  SolverFailure failure;
-  failure.time = time;
-  failure.step = step;
-  failure.parts.push_back(detector.name(key));
-  const std::string message = "time stepping at t = " + to_text(time) + " s, step " + to_text(step) +
-                              " s: " + option + ": the step ends again and again where " +
-                              failure.parts.front() + " meet; allowed: at most " +
-                              std::to_string(PartedSteps::most_parts) + " times (a shorter step, or e < 1)";
-  throw RunError(message, std::move(failure));
+/// Searches for what passes through anything; null where nothing does.
+std::unique_ptr<PassageSearch> make_passages(const Assembly& assembly, const TimeStepper& stepper) {
+  const TimeStepping& options = stepper.options();
+  const bool located = options.impacts == ImpactTimes::located;
+  if (assembly.layout()->dimension() != 2 || !(located || options.overlaps.never_tunnel)) return nullptr;
+  auto passages = std::make_unique<PassageSearch>(assembly, stepper.detector(), options,
+                                                  located ? Passages::of_far_sides : Passages::all);
+  return passages->finds_any() ? std::move(passages) : nullptr;
 }
 
 }  // namespace
 
 bool PartedSteps::needed(const Assembly& assembly, const TimeStepper& stepper) {
-  return stepper.ends_at_closings() ||
-         (stepper.options().overlaps.never_tunnel && assembly.layout()->dimension() == 2);
+  return stepper.ends_at_closings() || make_passages(assembly, stepper) != nullptr;
 }
 
-PartedSteps::PartedSteps(const Assembly& assembly, TimeStepper& stepper) : stepper_(&stepper) {
+PartedSteps::PartedSteps(const Assembly& assembly, TimeStepper& stepper)
+    : stepper_(&stepper), passages_(make_passages(assembly, stepper)) {
   if (stepper.ends_at_closings()) {
     closings_ = std::make_unique<ClosingSearch>(assembly, stepper.detector(), stepper.options());
-  } else {
-    passages_ = std::make_unique<PassageSearch>(assembly, stepper.detector(), stepper.options());
   }
 }
 
@@ -44,7 +39,7 @@ void PartedSteps::make_part(double length, double end) {
   trial_.state = done_.state;
   trial_.companion = done_.companion;
   stepper_->step(trial_.state, trial_.companion, length, end, part_);
-  made_ += stepper_->passes();
+  made_ += stepper_->last().passes;
 }
 
 /// Impulses of a short part say less of the next one than those of a longer part before it.
@@ -60,52 +55,78 @@ bool PartedSteps::may_search() const {
   return done_.companion.steps_owed + made_ < most;
 }
 
-/// A part up to the end of the step, or to where something is deep enough. Bodies that are moved out of
-/// something at its end are not looked at on that way: it does not grow shorter with the part.
-void PartedSteps::part_before_passage(const Whole& whole, double length) {
-  for (double end = whole.end;;) {
-    make_part(length, end);
-    const bool moves = stepper_->options().project_gaps;
-    if (moves) {
-      came_ = trial_.state;
-      stepper_->take_back_projection(came_);
-    }
-    const PassageSearch::Passage passage = passages_->first(done_.state, moves ? came_ : trial_.state);
-    if (!(passage.share < 1.0)) return;
-    const double earlier = done_.state.time + passage.share * (end - done_.state.time);
-    if (earlier == end) return;
-    if (++parts_ > most_parts || !(earlier > done_.state.time)) {
-      fail(stepper_->detector(), passage.key, "overlaps.never_tunnel", whole.start, whole.step);
-    }
-    end = earlier;
-    length = end - done_.state.time;
-  }
+/// The first pair that comes deep on the way of the part. Bodies that are moved out of something at its end
+/// are not looked at on that way: it does not grow shorter with the part.
+PassageSearch::Passage PartedSteps::first_passage() {
+  if (!passages_) return {};
+  const TimeStepper::LastStep last = stepper_->last();
+  if (!stepper_->options().project_gaps) return passages_->first(done_.state, trial_.state, *last.flights);
+  came_ = trial_.state;
+  last.projection->take_back(came_);
+  return passages_->first(done_.state, came_, *last.flights);
+}
+
+/// Takes note of what closes at the end of a part. \param hit at which it ends; null where it ends elsewhere
+void PartedSteps::note_closings(const ClosingSearch::Closing* hit) {
+  bool known = false;
+  const auto accelerations = [&]() -> const std::vector<double>& {
+    if (std::exchange(known, true)) return accelerations_;
+    const TimeStepper::LastStep last = stepper_->last();
+    const State& begin = last.after_impacts != nullptr ? *last.after_impacts : done_.state;
+    last.flights->write_accelerations(begin.v, trial_.state, trial_.state.time - done_.state.time,
+                                      accelerations_);
+    return accelerations_;
+  };
+  closings_->note(trial_.state, hit, accelerations, trial_.companion.closings);
 }
 
 /// A part up to the end of the step, or to the first closing: the root of a gap over the length of the part,
-/// by Newton's method, kept between an end at which all is open and one at which it is not.
-void PartedSteps::part_at_closing(const Whole& whole, double length) {
-  const double aim = 0.5 * closings_->rounding();
-  const double begin = done_.state.time;
-  if (!may_search()) return make_part(length, whole.end);
+/// by Newton's method, kept between an end at which all is open and one at which it is not. What would leave
+/// a thing on its far side by the end of a part is in it at an earlier end.
+void PartedSteps::make_part_up_to(const Whole& whole, double length) {
+  const double aim = closings_ ? 0.5 * closings_->rounding() : 0.0, begin = done_.state.time;
+  const bool searches = closings_ && may_search();
   double open = begin, closed = std::numeric_limits<double>::infinity();
-  ClosingSearch::Closing hit;  // the last one found
+  ClosingSearch::Closing found;
+  PassageSearch::Passage passage;  // the last one found
+  bool hits = false;               // the part ends where a contact closes
   for (double end = whole.end;;) {
     make_part(length, end);
-    const ClosingSearch::Closing found = closings_->look(done_.state, trial_.state, trial_.companion.modes);
-    (closings_->is_late(found) ? closed : open) = end;
-    if (open == whole.end) return;
-    if (found.gap <= 0.0) hit = found;
-    if (closings_->is_now(found)) break;
-    double next = end - (found.gap + aim) / found.rate;
+    if (closings_) found = closings_->look(done_.state, trial_.state, trial_.companion.modes);
+    const bool is_late = searches && closings_->is_late(found);
+    const PassageSearch::Passage first = is_late ? PassageSearch::Passage{} : first_passage();
+    const bool passes = first.time < end;
+    if (passes) passage = first;
+    (is_late || passes ? closed : open) = end;
+    hits = is_late || (searches && !passes && closings_->is_now(found));
+    if (open == end && (end == whole.end || hits || end == passage.time)) break;
+    double next = passes ? first.time : end - (found.gap + aim) / found.rate;
     if (!(next > open && next < closed)) next = 0.5 * (open + closed);
     const bool is_between = next > open && next < closed;
     if (!is_between && end == closed) break;  // as near as times can be told apart
     end = is_between ? next : closed;
     length = end - begin;
   }
-  if (++parts_ > most_parts) fail(stepper_->detector(), hit.key, "impacts", whole.start, whole.step);
-  closings_->count(hit);
+  const bool early = trial_.state.time < whole.end;
+  if (early && ++parts_ > most_parts) fail(hits ? found.key : passage.key, whole);
+  if (!closings_) return;
+  // What is not searched for any more is told.
+  if ((!searches && closings_->is_late(found)) || closings_->any_given_up())
+    ++trial_.companion.statistics.cut_sequences;
+  note_closings(early && hits ? &found : nullptr);
+}
+
+[[noreturn]] void PartedSteps::fail(const ConstraintKey& key, const Whole& whole) const {
+  const char* const option = stepper_->options().overlaps.never_tunnel ? "overlaps.never_tunnel" : "impacts";
+  SolverFailure failure;
+  failure.time = whole.start;
+  failure.step = whole.step;
+  failure.parts.push_back(stepper_->detector().name(key));
+  const std::string message =
+      "time stepping at t = " + to_text(whole.start) + " s, step " + to_text(whole.step) + " s: " + option +
+      ": the step ends again and again where " + failure.parts.front() + " meet; allowed: at most " +
+      std::to_string(most_parts) + " times (a shorter step, or e < 1)";
+  throw RunError(message, std::move(failure));
 }
 
 void PartedSteps::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
@@ -115,7 +136,7 @@ void PartedSteps::step(State& state, Companion& companion, double step, double e
   if (closings_) closings_->begin_step();
   const Whole whole{state.time, step, end_time};
   for (double length = step; done_.state.time < end_time; length = end_time - done_.state.time) {
-    closings_ ? part_at_closing(whole, length) : part_before_passage(whole, length);
+    make_part_up_to(whole, length);
     if (done_.state.time == state.time) {
       std::swap(sum_, part_);
     } else {

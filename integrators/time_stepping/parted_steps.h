@@ -1,14 +1,15 @@
 #pragma once
 
 /// \file
-/// Steps in several parts. A step ends early where a pair would come too deep (OverlapRules::never_tunnel),
-/// or where a contact closes that has to be hit then (TimeStepping::impacts); the rest of it is another one,
-/// which begins with the impact.
+/// Steps in several parts. A step ends early where a pair would come too deep and could leave each other on
+/// the far side (OverlapRules::never_tunnel, TimeStepping::impacts), or where a contact closes that has to be
+/// hit then (TimeStepping::impacts); the rest of it is another one, which begins with the impact.
 ///
 /// Every closing takes some steps of the whole model. In a heap something closes all the time: so the steps
 /// that are made are counted, those repeated because contacts turn included, and with s of them allowed for
 /// each (steps_per_step) n steps take at most (n + 50) s and one search, if one by itself takes
-/// no more than s. What is not searched for any more acts when the next step begins, by the same laws.
+/// no more than s. What is not searched for any more acts when the next step begins, by the same laws, and is
+/// counted (ContactCounts::cut_sequences); only what would pass through anything parts the step then.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -19,6 +20,7 @@
 #include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <memory>
+#include <vector>
 
 namespace carom {
 
@@ -51,18 +53,21 @@ private:
     double start, step, end;
   };
   void make_part(double length, double end);
-  void part_before_passage(const Whole& whole, double length);
-  void part_at_closing(const Whole& whole, double length);
+  void make_part_up_to(const Whole& whole, double length);
+  [[nodiscard]] PassageSearch::Passage first_passage();
   [[nodiscard]] bool may_search() const;
+  void note_closings(const ClosingSearch::Closing* hit);
+  [[noreturn]] void fail(const ConstraintKey& key, const Whole& whole) const;
   void keep_impulses();
 
   TimeStepper* stepper_;
-  std::unique_ptr<PassageSearch> passages_;  // one of these is null
-  std::unique_ptr<ClosingSearch> closings_;
+  std::unique_ptr<PassageSearch> passages_;  // null where nothing has a far side
+  std::unique_ptr<ClosingSearch> closings_;  // null where nothing is located by parts
   Run done_, trial_;
   State came_;     // the end of a part before bodies are moved out of others
   int parts_ = 0;  // that ended early
   int made_ = 0;   // steps of the whole model for the step at hand, with those repeated
+  std::vector<double> accelerations_;
   StepReport part_, sum_;
 };
 

@@ -32,18 +32,25 @@ double circle_in(const ConvexOutline& of) {
 }
 
 /// Nothing leaves ground without a far side (the outside of a box or of a circle), but it may end a step far
-/// outside. It adds no thickness: how deep a body may come in it depends on the body alone.
-double circle_in(const GroundPieces& pieces, Index outline) {
+/// outside. Where all passages are looked for it adds no thickness: how deep a body may come in it depends on
+/// the body alone. Else it is left out; a hill of any depth is as thick as what its corners hold.
+double circle_in(const GroundPieces& pieces, Index outline, Passages which) {
   const GroundOutline& of = pieces.outlines()[outline];
-  if (of.is_hollow()) return 0.0;
-  if (of.is_chain()) return std::isfinite(of.depth) ? 0.5 * of.depth : 0.0;
-  return circle_in(pieces.view(outline));
+  const double of_no_far_side = which == Passages::all ? 0.0 : infinite;
+  if (of.is_hollow()) return of_no_far_side;
+  if (!of.is_chain()) return circle_in(pieces.view(outline));
+  if (std::isfinite(of.depth)) return 0.5 * of.depth;
+  if (which == Passages::all) return 0.0;
+  const double hill = circle_in(pieces.view(outline));
+  return hill > 0.0 ? hill : infinite;
 }
 
 }  // namespace
 
-PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options)
+PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options,
+                             Passages which)
     : look_(assembly, detector),
+      which_(which),
       least_depth_(1e3 * gap_rounding(assembly, options)),
       at_(assembly.initial_state()) {
   reach_.assign(assembly.layout()->bodies().size(), 0.0);
@@ -61,7 +68,7 @@ PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector,
     const GroundPieces& pieces = detector.pieces().pieces();
     for (Index i = 0; i < pieces.outlines().size(); ++i) {
       const GroundOutline& of = pieces.outlines()[i];
-      add(of.key, {circle_in(pieces, i), of.is_hollow()});
+      add(of.key, {circle_in(pieces, i, which), of.is_hollow()});
     }
   }
   set_thinnest();
@@ -71,12 +78,14 @@ void PassageSearch::add(const FeatureKey& key, const Thickness& thickness) {
   thickness_.emplace(key, thickness);
 }
 
-/// Less than any pair may come deep: twice the thinnest of bodies, or that and the thinnest ground.
+/// Less than any pair may come deep: twice the thinnest of bodies that touch each other, or that and the
+/// thinnest ground.
 void PassageSearch::set_thinnest() {
   double body = infinite, any = infinite;
   for (const auto& [key, thickness] : thickness_) {
-    any = std::min(any, thickness.circle);
-    if (key.owner != FeatureKey::Owner::obstacle) body = std::min(body, thickness.circle);
+    const bool is_ground = key.owner == FeatureKey::Owner::obstacle;
+    if (is_ground || look_.detector().bodies_touch()) any = std::min(any, thickness.circle);
+    if (!is_ground) body = std::min(body, thickness.circle);
   }
   thinnest_ = std::max(least_depth_, deep * (body + any));
 }
@@ -190,29 +199,54 @@ double PassageSearch::depth_at_start(const Constraint& contact) const {
   return known != at_start_.end() && known->first == pair ? known->second : 0.0;
 }
 
-PassageSearch::Passage PassageSearch::first(const State& start, const State& end) {
-  if (thickness_.empty()) return {};
+/// How far a pair may go before it is looked at again although it is near [m].
+double PassageSearch::stride(const Constraint& contact, double most_deep, double nearer) const {
+  if (which_ == Passages::all) return 0.5 * most_deep;
+  // What passes through another thing is in it for at least the radii of the circles in both.
+  constexpr double parts = 16.0;
+  const double circles = outline(contact.key.a)->second.circle + outline(contact.key.b)->second.circle;
+  return std::max(circles, nearer / parts);
+}
+
+PassageSearch::Passage PassageSearch::first(const State& start, const State& end, StepFlights& flights) {
+  if (!finds_any()) return {};
+  knows_depths_ = false;
+  if (flights.empty()) return first_on_chord(start, end, start);
+  const std::size_t corners = flights.write_way(start, end, way_);
+  for (std::size_t i = 1; i < corners; ++i) {
+    const Passage found = first_on_chord(way_[i - 1], way_[i], start);
+    if (!std::isinf(found.time)) return found;
+  }
+  return {};
+}
+
+/// Likewise where all positions change evenly. \param begin of the whole way
+PassageSearch::Passage PassageSearch::first_on_chord(const State& start, const State& end,
+                                                     const State& begin) {
   step_ = end.time - start.time;
   const double most = most_approach(start, end);
   if (!(most > thinnest_)) return {};
   at_.v = start.v;
   look_.detector().place(end.time, places_at_end_);
   margin_ = most;
-  look(start, 0.0);
-  keep_depths();
+  if (!knows_depths_) {
+    look(begin, 0.0);
+    keep_depths();
+  }
+  if (knows_depths_ || &begin != &start) look(start, 0.0);
+  knows_depths_ = true;
   for (double share = 0.0;;) {
-    Passage next;
+    double next = 2.0;
     for (const Constraint& contact : contacts_) {
       const double most_deep = allowed(contact);
       const double left = contact.gap + most_deep + depth_at_start(contact);
-      if (!(left > 0.0)) return {share, contact.key};
+      if (!(left > 0.0)) return {share < 1.0 ? start.time + share * step_ : end.time, contact.key};
       const double nearer = approach(contact);
       if (!(nearer > 0.0)) continue;
-      const double safe = share + std::max(left, 0.5 * most_deep) / nearer;
-      if (safe < next.share) next = {safe, contact.key};
+      next = std::min(next, share + std::max(left, stride(contact, most_deep, nearer)) / nearer);
     }
-    if (!(next.share < 1.0)) return {};
-    share = next.share;
+    if (!(next < 1.0)) return {};
+    share = next;
     margin_ = most * (1.0 - share);
     look(start, share);
   }

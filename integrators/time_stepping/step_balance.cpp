@@ -12,6 +12,7 @@ namespace carom {
 void StepBalance::begin(const StepInput& in) {
   result_.flows = {};
   result_.stored = {};
+  jumps_ = {};
   result_.contact_modes.clear();
   result_.joint_friction_modes.clear();
   result_.tally = {};

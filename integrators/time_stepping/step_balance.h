@@ -77,8 +77,11 @@ public:
   explicit StepBalance(const Assembly& assembly, const TimeStepping& options)
       : assembly_(&assembly), capture_speed_(options.capture_speed) {}
 
-  /// Begins a step.
+  /// Begins a step, in which no ground shape jumps.
   void begin(const StepInput& in);
+  /// What is booked from now on has jumps of the velocities of ground shapes in it: impulses act behind them,
+  /// against the velocities that they lead to. \param jumps must outlive their use
+  void use_jumps(std::span<const GroundJump> jumps) { jumps_ = jumps; }
   /// Books what elements did: works and energies of the last iterate. False if one is not finite.
   [[nodiscard]] bool book_couplings(const StepInput& in, Index component, const StepTrial& trial);
   /// Likewise of bodies whose loads do not change, and are conservative.
@@ -124,7 +127,8 @@ public:
 private:
   void book_joint_friction(const IslandProblem& problem, std::size_t contact, const double* after,
                            const StepTrial& trial, ImpulseWork& sum);
-  void book_rolling(const IslandProblem& problem, std::size_t contact, const double* after, ImpulseWork& sum);
+  void book_rolling(const IslandProblem& problem, std::size_t contact, const double* after,
+                    const StepInput& in, ImpulseWork& sum);
   double book_gain(std::span<const Constraint> contacts, const double* b, const double* impulse,
                    const ImpulseWork& work, bool impact, const StepTrial& trial);
   void tally(const IslandProblem& problem, int contacts);
@@ -132,6 +136,7 @@ private:
   const Assembly* assembly_;
   double capture_speed_;
   StepResult result_;
+  std::span<const GroundJump> jumps_;
   std::vector<double> rates_;  // by row of joints
   CompensatedSum coupling_work_;
   double energy_position_projection_ = 0.0;  // energy taken out by moving bodies [J]

@@ -74,10 +74,18 @@ void StepConstraints::allow_rounding(double step, bool pressed_open) {
 
 void StepConstraints::place_surfaces(const StepInput& in) {
   if (!detector_.has_moving_ground()) return;
-  if (places_after_.time() == in.start.time) std::swap(places_, places_after_);
-  detector_.place(in.start.time, places_);
-  detector_.place(in.end_time, places_after_);
-  detector_.demand_continuous(places_, places_after_);
+  if (ground_.end.time() == in.start.time) std::swap(ground_.start, ground_.end);
+  detector_.place(in.start.time, ground_.start);
+  detector_.place(in.end_time, ground_.end);
+  detector_.demand_continuous(ground_.start, ground_.end);
+  detector_.list_jumps(in.start.time, in.end_time, ground_.jumps);
+}
+
+std::span<const GroundJump> StepConstraints::jumps_within(double begin, double end) const {
+  const std::vector<GroundJump>& all = ground_.jumps;
+  const auto is_later = [](double time, const GroundJump& jump) { return time < jump.time; };
+  const auto first = std::upper_bound(all.begin(), all.end(), begin, is_later);
+  return {first, std::upper_bound(first, all.end(), end, is_later)};
 }
 
 OpeningSlack StepConstraints::Rules::slack_of(double step) const {
@@ -107,7 +115,7 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
 
 ContactQuery StepConstraints::query(const StepInput& in, const StepTrial& trial) const {
   const LastingContacts* const lasting = lasting_.empty() ? nullptr : &lasting_;
-  return {in.start.view(), trial.at_start, places_, &places_after_, rules_.margin, lasting};
+  return {in.start.view(), trial.at_start, ground_.start, &ground_.end, rules_.margin, lasting};
 }
 
 /// Contacts that stuck in the last step have their static friction.
@@ -177,9 +185,9 @@ void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& ou
   for (std::size_t i = first; i < out.size(); ++i) {
     with_rolling_.push_back(out[i]);
     if (out[i].type == ConstraintType::contact && out[i].law.resists_rolling()) {
-      with_rolling_.push_back(rolling_resistance(out[i], ground_motion_of(detector_, out[i], places_)));
+      with_rolling_.push_back(rolling_resistance(out[i], ground_motion_of(detector_, out[i], ground_.start)));
       with_rolling_.back().drift = {};  // steps take the spins at both ends
-      const GroundMotion* const after = ground_motion_of(detector_, out[i], places_after_);
+      const GroundMotion* const after = ground_motion_of(detector_, out[i], ground_.end);
       if (after == nullptr) continue;
       Constraint& rolling = with_rolling_.back();
       rolling.surface_velocity_after[0] = rolling.of_joint.length * after->spin;

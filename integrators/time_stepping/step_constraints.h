@@ -34,9 +34,11 @@ public:
   /// Its detector.
   [[nodiscard]] const Detector& detector() const { return detector_; }
   /// Ground shapes that move, at the start of the step;
-  [[nodiscard]] const GroundPlaces& places_at_start() const { return places_; }
+  [[nodiscard]] const GroundPlaces& places_at_start() const { return ground_.start; }
   /// at its end.
-  [[nodiscard]] const GroundPlaces& places_at_end() const { return places_after_; }
+  [[nodiscard]] const GroundPlaces& places_at_end() const { return ground_.end; }
+  /// Jumps of the velocities of ground shapes in a part of the step, behind its begin and up to its end [s].
+  [[nodiscard]] std::span<const GroundJump> jumps_within(double begin, double end) const;
   /// Moves ground shapes. Throws SolverError naming one whose motion is not finite or jumps.
   void place_surfaces(const StepInput& in);
 
@@ -109,7 +111,10 @@ private:
     // Of a step of that length [s], which gaps may come from.
     [[nodiscard]] OpeningSlack slack_of(double step) const;
   } rules_;
-  GroundPlaces places_, places_after_;   // at the start; at the end
+  struct {
+    GroundPlaces start, end;
+    std::vector<GroundJump> jumps;  // of velocities, ascending
+  } ground_;
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   BodyContactSearch search_;

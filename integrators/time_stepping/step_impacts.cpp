@@ -29,6 +29,7 @@ StepImpacts::StepImpacts(StepParts& parts)
           parts.options.impact_rules.energy_gain == EnergyGain::limit ||
           parts.options.overlaps.never_tunnel || parts.ends_at_closings() ||
           has_other_impact_law(parts.constraints.detector())),
+      capture_(CaptureRule::of(*parts.assembly, parts.options)),
       balance_(*parts.assembly, parts.options),
       problem_(options_of_impacts(parts)),
       response_(*parts.assembly) {
@@ -55,8 +56,10 @@ bool StepImpacts::resolve(const StepInput& in) {
       contact.allowed_approach = 0.0;
     }
     const double* const v = struck ? start_.v.data() : in.start.v.data();
+    const ClosingNotes& notes = in.companion.closings;
     const auto approaches = [&](const Constraint& contact) {
-      return contact.normal_velocity(v) < -parts_->options.capture_speed;
+      return capture_.is_fast(contact.normal_velocity(v)) ||
+             is_noted(notes.free, notes.all_free, contact, v) || is_noted(notes.cut, false, contact, v);
     };
     if (std::none_of(contacts_.begin(), contacts_.end(), approaches)) continue;
     if (!struck) {
@@ -71,6 +74,15 @@ bool StepImpacts::resolve(const StepInput& in) {
     }
   }
   return struck;
+}
+
+/// True of a contact that is to be solved as an impact although it may be slow. \param all whether all that
+/// approach are
+bool StepImpacts::is_noted(const std::vector<ConstraintKey>& keys, bool all, const Constraint& contact,
+                           const double* v) const {
+  if (!parts_->ends_at_closings() || (keys.empty() && !all)) return false;
+  if (!(contact.normal_velocity(v) < -capture_.slowest)) return false;
+  return all || std::find(keys.begin(), keys.end(), contact.key) != keys.end();
 }
 
 void StepImpacts::place_joints(const StepInput& in) {
@@ -94,12 +106,17 @@ double StepImpacts::fastest(std::span<const Constraint> contacts) const {
 void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint> contacts) {
   const TimeStepping& options = parts_->options;
   const bool sequential = options.impact_rules.order == ImpactOrder::sequential;
+  const ClosingNotes& notes = in.companion.closings;
   double noise = 0.0;
+  bool any_free = false, any_cut = false;
   for (const Constraint& contact : contacts) {
     noise = std::max(noise, speed_rounding * contact.speed(0, start_.v.data()));
+    any_free = any_free || is_noted(notes.free, notes.all_free, contact, start_.v.data());
+    any_cut = any_cut || is_noted(notes.cut, false, contact, start_.v.data());
   }
   for (int round = 0; round < most_impacts_at_once; ++round) {
-    const double least = sequential && round > 0 ? noise : std::max(noise, options.capture_speed);
+    const bool any_slow = round > 0 ? sequential : any_free || any_cut;
+    const double least = any_slow ? noise : std::max(noise, options.capture_speed);
     if (!(fastest(contacts) > least)) return;
     touching_.assign(contacts.begin(), contacts.end());
     for (Constraint& contact : touching_) {
@@ -108,7 +125,7 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
       contact.friction = contact.law.friction_at(sliding > noise ? sliding : 0.0);
     }
     ImpactNote note;
-    note.cut_sequence = sequential && round >= options.impact_rules.sequence_limit;
+    note.cut_sequence = any_cut || (sequential && round >= options.impact_rules.sequence_limit);
     if (sequential && !note.cut_sequence) keep_fastest(touching_, start_.v.data());
     if (note.cut_sequence) {
       for (Constraint& contact : touching_) contact.remove_restitution();

@@ -4,8 +4,8 @@
 /// Impacts at the start of a step, where not every contact follows Newton's law, or impacts are sequential,
 /// or their energy is limited, or nothing may pass through anything: what closes faster than the capture
 /// speed is resolved at the velocities v_j, as in the event-driven mode; the step follows from the velocities
-/// after it, and its contacts have e = 0. A contact that closes more slowly does not rebound. Friction in
-/// joints takes no part in these impacts.
+/// after it, and its contacts have e = 0. A contact that closes more slowly does not rebound, unless it is
+/// located and nothing presses it (ClosingNotes). Friction in joints takes no part in these impacts.
 
 #include <carom/contact/impact_rules.h>
 #include <carom/contact/island_partition.h>
@@ -16,6 +16,7 @@
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/impact_note.h>
+#include <carom/integrators/time_stepping/capture_rule.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>
@@ -47,6 +48,8 @@ public:
   [[nodiscard]] SolverChain& chain() { return chain_; }
 
 private:
+  [[nodiscard]] bool is_noted(const std::vector<ConstraintKey>& keys, bool all, const Constraint& contact,
+                              const double* v) const;
   void resolve_island(const StepInput& in, std::span<const Constraint> contacts);
   [[nodiscard]] double fastest(std::span<const Constraint> contacts) const;
   [[nodiscard]] bool solve();
@@ -57,6 +60,7 @@ private:
 
   StepParts* parts_;
   bool on_;
+  CaptureRule capture_;
   State start_;
   StepBalance balance_;
   IslandProblem problem_;

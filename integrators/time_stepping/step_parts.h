@@ -11,6 +11,7 @@
 #include <carom/integrators/time_stepping/located_impacts.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 #include <carom/integrators/time_stepping/step_errors.h>
+#include <carom/integrators/time_stepping/step_flights.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 #include <carom/integrators/time_stepping/sweep_schedule.h>
@@ -82,6 +83,7 @@ struct StepParts {
   SweepSchedule schedule;
   JointStages joints;
   JoinedMechanisms joined;
+  StepFlights flights;
 };
 
 }  // namespace carom

@@ -62,6 +62,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   if (!known) evaluate_start(parts_, state, companion);
   const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
   try {
+    parts_.flights.clear();
     flown_ = uncoupled_ ? uncoupled_->fly(in, state, companion, report) : Flight::not_free;
     if (flown_ == Flight::made) return;
     struck_ = impacts_ != nullptr && strike(in);
@@ -150,7 +151,9 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
 /// Of all islands, from the start of the step.
 void TimeStepper::advance_all(const StepInput& in) {
   balance_.begin(in);
+  balance_.use_jumps(parts_.constraints.jumps_within(in.start.time, in.end_time));
   capped_.begin();
+  parts_.flights.clear();  // of a step that is made again
   memory_.iterations.clear();
   projection_.begin();
   if (impacts_ != nullptr && struck_) balance_.add(impacts_->result());
@@ -263,15 +266,20 @@ void TimeStepper::book_contacts(const StepIsland& island, const StepInput& in) {
 void TimeStepper::book_located(Range bodies, const StepInput& in) {
   const double* const after = parts_.trial.end.v.data();
   for (const LocatedMotion* motion : parts_.located.motions_of(bodies)) {
+    parts_.flights.add(in, *motion);
     for (const MotionPhase& phase : motion->phases()) {
       motion->show_end(in, phase, parts_.trial);
       if (phase.constraints.empty()) continue;
+      const double begin = in.start.time + phase.begin * in.step;
       const double time = phase.end < 1.0 ? in.start.time + phase.end * in.step : in.end_time;
+      balance_.use_jumps(phase.is_impact() ? std::span<const GroundJump>()
+                                           : parts_.constraints.jumps_within(begin, time));
       book_contact_problem(phase.problem, after, time, in);
       if (phase.cut) balance_.tell_cut(phase.constraints.size());
       balance_.book_turning(phase.turning_work);
     }
   }
+  balance_.use_jumps(parts_.constraints.jumps_within(in.start.time, in.end_time));
 }
 
 /// \param after velocities after it, as contact sees them \param time when it ends [s]

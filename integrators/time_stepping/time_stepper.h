@@ -54,10 +54,17 @@ public:
   [[nodiscard]] const TimeStepping& options() const { return parts_.options; }
   /// True if a step is to end where contacts close, so that its rest begins with the impact (parted_steps.h).
   [[nodiscard]] bool ends_at_closings() const { return parts_.ends_at_closings(); }
-  /// How often the last step was made: again where contacts turn in it (contact_turning.h).
-  [[nodiscard]] int passes() const { return passes_; }
-  /// Brings the end of the last step to where bodies came by themselves, before TimeStepping::project_gaps.
-  void take_back_projection(State& end) const { projection_.take_back(end); }
+  /// How the last step was made.
+  struct LastStep {
+    int passes;                        ///< how often: again where contacts turn in it (contact_turning.h)
+    const State* after_impacts;        ///< its start behind impacts there; null if there were none
+    StepFlights* flights;              ///< of bodies that were hit within it
+    const StepProjection* projection;  ///< what TimeStepping::project_gaps has moved at its end
+  };
+  /// The last step. Valid until the next one.
+  [[nodiscard]] LastStep last() {
+    return {passes_, struck_ ? &impacts_->start() : nullptr, &parts_.flights, &projection_};
+  }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
 
