@@ -1,6 +1,7 @@
 // Problem: in which direction does a slider leave its dead point?
 
 #include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/numerics/full_pivoting.h>
 #include <carom/integrators/event_driven/dead_points.h>
 
 #include <algorithm>
@@ -40,13 +41,65 @@ double own_response(const Assembly& assembly, const Constraint& contact) {
   return sum;
 }
 
+/// True of a candidate that stays closed and pushes along a normal.
+bool presses(const Candidate& candidate) {
+  return candidate.mode != ContactMode::open && !candidate.rolls() && !candidate.at.has_dry_friction();
+}
+
+/// Responses along rows of a problem where the normals of what is closed hold, besides the joints: a slider
+/// that stands on a floor could turn, were it not for the floor.
+class ResponseOnFloors {
+public:
+  ResponseOnFloors(const ModeDecision& made, std::span<const Candidate> candidates)
+      : problem_(made.problem()) {
+    for (std::size_t c = 0; c < made.taking_part().size(); ++c) {
+      if (presses(candidates[made.taking_part()[c]])) normals_.push_back(problem_.first_row(c));
+    }
+  }
+
+  /// Response along a row; by joints alone where very many contacts press.
+  [[nodiscard]] double along(int row) {
+    constexpr std::size_t most = 32;
+    const double response = problem_.problem().w(row, row);
+    const std::size_t n = normals_.size();
+    if (n == 0 || n > most) return response;
+    right_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) right_[i] = problem_.problem().w(normals_[i], row);
+    if (!(is_factored_ ? factors_.solve_again(right_) : factor())) return response;
+    double left = response;
+    for (std::size_t i = 0; i < n; ++i) left -= problem_.problem().w(row, normals_[i]) * right_[i];
+    return left;
+  }
+
+private:
+  [[nodiscard]] bool factor() {
+    constexpr double dependent = 1e-11;
+    const std::size_t n = normals_.size();
+    factors_.reset(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j)
+        factors_.matrix()[i * n + j] = problem_.problem().w(normals_[i], normals_[j]);
+    }
+    is_factored_ = factors_.solve(dependent, right_);
+    return is_factored_;
+  }
+
+  const IslandProblem& problem_;
+  std::vector<int> normals_;  // rows
+  FullPivoting factors_;
+  std::vector<double> right_;
+  bool is_factored_ = false;
+};
+
 /// One candidate and the mechanism around it, a moment later.
 class LookAhead {
 public:
+  /// \param candidates those beside the contact, with their modes
   LookAhead(const Constraint& contact, const ContactPair& pair, const double* acceleration,
-            const EventInstant& at)
+            const EventInstant& at, std::span<const Candidate> candidates)
       : contact_(contact),
         pair_(pair),
+        candidates_(candidates),
         at_(at),
         model_(at.motion.model()),
         lengths_(at.motion.memory().lengths),
@@ -66,17 +119,17 @@ public:
     find_extent();
   }
 
-  /// Sliding velocity a moment later, 0 if there is none.
-  [[nodiscard]] double slip() {
-    // The law says where to as soon as there is an acceleration.
+  /// Direction of sliding a moment later, 0 if there is none. \param by_joints joints alone hold the contact
+  [[nodiscard]] double slip(bool by_joints) {
+    // An acceleration says where to. Solvers may see in a response of rounding, of either sign, forces that
+    // stop it.
     const double along = contact_.tangential_acceleration(acceleration_.data());
-    if (std::abs(along) > SlipDirections::no_acceleration * gains_) return 0.0;
-    if (speed_ > at_.scales.speed_noise || gains_ > SlipDirections::no_acceleration * free_acceleration()) {
-      return slip_after(time_to_move());
-    }
+    const double small = SlipDirections::no_acceleration * std::max(gains_, free_acceleration());
+    if (std::abs(along) > small) return along;
+    if (speed_ > at_.scales.speed_noise || gains_ > small) return slip_after(time_to_move());
     // Nothing moves yet: a driver may, or loads that change with time will.
     const double found = depends_on_time() ? slip_by_drivers() : 0.0;
-    if (found != 0.0 || !model_.loads.depends_on_time) return found;
+    if (found != 0.0 || !model_.loads.depends_on_time || !by_joints) return found;
     return slip_anywhere();
   }
 
@@ -200,7 +253,15 @@ private:
     const double slip = there.tangential_velocity(trial_.v.data());
     double speed = 0.0;
     for_coordinates([&](Index i) { speed = std::max(speed, std::abs(trial_.v[i]) * lengths_[i]); });
-    return std::abs(slip) > rounding_ahead * speed ? slip : 0.0;
+    if (!(std::abs(slip) > rounding_ahead * speed)) return 0.0;
+    // Contacts that press would keep it from such a motion: a body in a corner stays there.
+    constexpr double as_fast = 0.5;
+    for (const Candidate& other : candidates_) {
+      if (!presses(other)) continue;
+      model_.detector->contact(other.pair, trial_.view(), evaluation_, places, there);
+      if (std::abs(there.normal_velocity(trial_.v.data())) > as_fast * std::abs(slip)) return 0.0;
+    }
+    return slip;
   }
 
   [[nodiscard]] double slip_after(double time) {
@@ -237,6 +298,7 @@ private:
 
   const Constraint& contact_;
   const ContactPair& pair_;
+  std::span<const Candidate> candidates_;
   const EventInstant& at_;
   const GroupModel& model_;
   const std::vector<double>& lengths_;
@@ -254,6 +316,7 @@ bool leave_dead_points(const ModeDecision& made, const EventInstant& at, std::sp
   if (at.motion.joints().rows().empty()) return false;
   const IslandProblem& problem = made.problem();
   const std::span<const std::size_t> taking_part = made.taking_part();
+  ResponseOnFloors responses(made, candidates);
   bool any = false;
   for (std::size_t c = 0; c < taking_part.size(); ++c) {
     Candidate& candidate = candidates[taking_part[c]];
@@ -262,9 +325,11 @@ bool leave_dead_points(const ModeDecision& made, const EventInstant& at, std::sp
     if (candidate.frictionless || contact.rows <= contact.tangent_row()) continue;
     const int row = problem.first_row(c) + contact.tangent_row();
     const double own = own_response(*at.motion.model().assembly, contact);
-    if (!(std::abs(problem.problem().w(row, row)) <= held_fast * own)) continue;
-    const double slip = LookAhead(contact, candidate.pair, made.acceleration(), at).slip();
-    if (slip == 0.0) continue;
+    const bool by_joints = std::abs(problem.problem().w(row, row)) <= held_fast * own;
+    if (!by_joints && !(std::abs(responses.along(row)) <= held_fast * own)) continue;
+    const double slip =
+        LookAhead(contact, candidate.pair, made.acceleration(), at, candidates).slip(by_joints);
+    if (slip == 0.0 || candidate.mode == mode_by_sign(slip)) continue;
     candidate.slip = std::copysign(std::numeric_limits<double>::min(), slip);
     any = true;
   }

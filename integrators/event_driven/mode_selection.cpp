@@ -115,7 +115,8 @@ bool ModeSelection::select_island(std::span<const Index> pairs, EventInstant& at
   collect_candidates(pairs, at);
   if (memory_->candidates.empty()) return true;
   Decision decision = decide_candidates(pairs, at);
-  if (decision == Decision::made && leave_dead_points(memory_->decision, at, memory_->candidates))
+  const bool found = decision == Decision::made || decision == Decision::several;
+  if (found && leave_dead_points(memory_->decision, at, memory_->candidates))
     decision = decide_candidates(pairs, at);
   if (decision == Decision::impossible || decision == Decision::failed) {
     failure_->demand_finite_loads(at.now);
