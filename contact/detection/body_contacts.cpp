@@ -237,9 +237,9 @@ std::optional<GapPoint> BodyContacts::second_at_corner(BodyTouch& first, const C
   const BodyOutline &a = outlines_.list()[first.a], &b = outlines_.list()[first.b];
   const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
   GapPoint& gap = first.gap;
-  const bool edge_of_a = gap.kind == GapKind::edge_of_a;
-  const Index i = edge_of_a ? nearer_end(of_a, gap.feature_a, of_b.vertices[gap.feature_b]) : gap.feature_a,
-              j = edge_of_a ? gap.feature_b : nearer_end(of_b, gap.feature_b, of_a.vertices[gap.feature_a]);
+  Index i = gap.feature_a, j = gap.feature_b;
+  if (gap.kind == GapKind::edge_of_a) i = nearer_end(of_a, i, of_b.vertices[j]);
+  if (gap.kind == GapKind::edge_of_b) j = nearer_end(of_b, j, of_a.vertices[i]);
   CornerMeeting meeting{SharpCorner::of(of_a, i), SharpCorner::of(of_b, j), lengths_.corner};
   meeting.lasts = query.lasting != nullptr && query.lasting->contains({a.vertex(i), b.surface()}) &&
                   query.lasting->contains({a.surface(), b.vertex(j)});

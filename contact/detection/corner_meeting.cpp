@@ -111,10 +111,12 @@ std::optional<GapPoint> second_contact(GapPoint& first, const CornerMeeting& mee
     return end.is_of_a == (first.kind == GapKind::edge_of_a) &&
            edge == (end.is_behind ? of.edge_behind : of.edge_before);
   };
-  const bool is_lower = is_first(cone->lower);
+  const bool of_corners = first.kind == GapKind::vertices;
+  const bool is_lower = of_corners || is_first(cone->lower);
   if (!is_lower && !is_first(cone->upper)) return {};
+  if (of_corners) first = gap_along(cone->lower, a, b);
   GapPoint second = gap_along(is_lower ? cone->upper : cone->lower, a, b);
-  if (!do_meet(first, second, meeting)) return {};
+  if (!of_corners && !do_meet(first, second, meeting)) return {};
   if (!cone->is_of_one()) return second;
   const bool lower_first = is_lower ? is_lower_first(first, second, meeting.same_place)
                                     : is_lower_first(second, first, meeting.same_place);

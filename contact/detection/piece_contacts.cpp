@@ -162,11 +162,9 @@ std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, In
   const ConvexOutline &of_a = search.placed, of_b = pieces_.view(on_ground);
   const double same_place = pieces_.lengths().corner;
   if (b.is_hollow() || of_a.radius + b.radius > 0.0 || !is_near_corner(first, same_place)) return {};
-  const bool edge_of_a = first.kind == GapKind::edge_of_a;
-  const Index i = edge_of_a ? nearer_end(of_a, first.feature_a, of_b.vertices[first.feature_b])
-                            : first.feature_a,
-              j = edge_of_a ? first.feature_b
-                            : nearer_end(of_b, first.feature_b, of_a.vertices[first.feature_a]);
+  Index i = first.feature_a, j = first.feature_b;
+  if (first.kind == GapKind::edge_of_a) i = nearer_end(of_a, i, of_b.vertices[j]);
+  if (first.kind == GapKind::edge_of_b) j = nearer_end(of_b, j, of_a.vertices[i]);
   if (!pieces_.is_corner(b.vertices.begin + j)) return {};
   CornerMeeting meeting{SharpCorner::of(of_a, i), pieces_.corner(on_ground, j), same_place};
   const BodyOutline& a = search.outline;
@@ -253,8 +251,9 @@ GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, I
       gap = pieces_.tracked(on_ground, point, 0, 0);
     } else {
       const bool any = feature == none;
-      if (any) feature = FeatureRegions(at).nearest();
-      gap = pieces_.tracked(on_ground, point, 0, feature);
+      const FeatureRegions regions(at);
+      if (any) feature = regions.nearest();
+      gap = regions.gap(point, feature);
       const double height = gap.gap + at.around.radius;
       if (any && at.chain && pieces_.is_out_behind(on_ground, height, vertex)) {
         gap.gap = -height - at.around.radius;  // it is on the other side

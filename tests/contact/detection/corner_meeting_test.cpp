@@ -1,0 +1,121 @@
+// Two sharp corners in one place: which directions are normals of both, and which two contacts they have.
+
+#include "tests/random.h"
+
+#include <carom/contact/detection/corner_meeting.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace {
+
+using namespace carom;
+using carom_test::Random;
+
+Vec<2> direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+/// A corner whose outward normals are those from one angle counter-clockwise to another.
+SharpCorner corner_of_normals(double from, double to, const Vec<2>& at = Vec<2>::Zero()) {
+  // An edge with normal n runs counter-clockwise along n turned to the left.
+  const Vec<2> in(-std::sin(from), std::cos(from)), out(-std::sin(to), std::cos(to));
+  return {at - in, at, at + out, false, 0, 4, 3};
+}
+
+SharpCorner point_at(const Vec<2>& at) { return {at, at, at, true, 0, 1, 1}; }
+
+constexpr double pi = 3.14159265358979323846;
+
+TEST(CornerMeeting, OfCardsThatLeanOnEachOtherEitherHasOneEnd) {
+  // The left card's upper right corner, leaning to the right by a; from b = the right one to a = the left
+  // one.
+  const double a = 0.3;
+  const SharpCorner left = corner_of_normals(-a, 0.5 * pi - a),
+                    right = corner_of_normals(0.5 * pi + a, pi + a);
+  const std::optional<CommonCone> cone = common_cone(left, right);
+  ASSERT_TRUE(cone);
+  EXPECT_FALSE(cone->is_of_one());
+  EXPECT_NEAR((cone->lower.normal - direction(pi - a)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((cone->upper.normal - direction(pi + a)).norm(), 0.0, 1e-15);
+  EXPECT_TRUE(cone->lower.is_of_a);
+  EXPECT_FALSE(cone->upper.is_of_a);
+}
+
+TEST(CornerMeeting, OfAPointOnARidgeBothEndsAreOfTheRidge) {
+  const std::optional<CommonCone> cone = common_cone(point_at({0.0, 0.0}), corner_of_normals(1.0, 2.5));
+  ASSERT_TRUE(cone);
+  EXPECT_TRUE(cone->is_of_one());
+  EXPECT_FALSE(cone->lower.is_of_a);
+  EXPECT_NEAR((cone->lower.normal - direction(1.0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((cone->upper.normal - direction(2.5)).norm(), 0.0, 1e-15);
+}
+
+TEST(CornerMeeting, EdgesThatLieOnEachOtherHaveOneDirection) {
+  // A box flush on another one; and a point at the end of a segment, which pushes across it only.
+  EXPECT_FALSE(common_cone(corner_of_normals(-0.5 * pi, 0.0), corner_of_normals(0.0, 0.5 * pi)));
+  EXPECT_FALSE(common_cone(point_at({0.0, 0.0}), corner_of_normals(-0.5 * pi, 0.5 * pi)));
+}
+
+TEST(CornerMeeting, TheConeIsWhatBothConesHaveInCommon) {
+  Random random(11);
+  int found = 0, of_one = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double from_a = random.uniform(-pi, pi), to_a = from_a + random.uniform(0.1, 3.0);
+    const double from_b = random.uniform(-pi, pi), to_b = from_b + random.uniform(0.1, 3.0);
+    const SharpCorner a = corner_of_normals(from_a, to_a), b = corner_of_normals(from_b, to_b);
+    const std::optional<CommonCone> cone = common_cone(a, b);
+    found += cone ? 1 : 0;
+    of_one += cone && cone->is_of_one() ? 1 : 0;
+    const auto turns_to = [](double from, double angle) {
+      const double turn = std::fmod(angle - from, 2.0 * pi);
+      return turn < 0.0 ? turn + 2.0 * pi : turn;
+    };
+    for (int i = 0; i < 64; ++i) {
+      const double angle = random.uniform(-pi, pi);
+      const bool is_in =
+          turns_to(from_b, angle) <= to_b - from_b && turns_to(from_a, angle + pi) <= to_a - from_a;
+      const auto left_of = [&](const Vec<2>& n) { return n[0] * std::sin(angle) - n[1] * std::cos(angle); };
+      const bool is_in_cone = cone && left_of(cone->lower.normal) >= 0.0 &&
+                              left_of(cone->upper.normal) <= 0.0 &&
+                              direction(angle).dot(cone->lower.normal + cone->upper.normal) > 0.0;
+      EXPECT_EQ(is_in, is_in_cone) << trial;
+    }
+    // With the corners in the other order it is the same one, turned by half a circle.
+    const std::optional<CommonCone> other = common_cone(b, a);
+    ASSERT_EQ(cone.has_value(), other.has_value());
+    if (!cone) continue;
+    EXPECT_EQ(cone->lower.normal, -other->lower.normal);
+    EXPECT_EQ(cone->lower.is_of_a, !other->lower.is_of_a);
+    EXPECT_EQ(cone->upper.normal, -other->upper.normal);
+  }
+  EXPECT_GT(found, 500);
+  EXPECT_GT(of_one, 100);
+}
+
+TEST(CornerMeeting, CornersMeetInOnePlaceWhenTheyCameFromThereAndWhereTheyDidBefore) {
+  const SharpCorner ridge = corner_of_normals(1.0, 2.5);
+  const auto meets = [&](const Vec<2>& at, const Vec<2>& velocity, bool lasts) {
+    const SharpCorner point = point_at(at);
+    const ConeEnd lower{direction(1.0), false, false}, upper{direction(2.5), false, true};
+    GapPoint first = gap_along(lower, point, ridge);
+    const GapPoint other = gap_along(upper, point, ridge);
+    if (other.gap > first.gap) first = other;
+    return second_contact(first, {point, ridge, 1e-9, lasts, velocity}).has_value();
+  };
+  const Vec<2> middle = direction(1.75), aside = direction(1.4);
+  EXPECT_TRUE(meets({0.0, 0.0}, {0.0, 0.0}, false));
+  EXPECT_TRUE(meets(-1e-3 * middle, {0.0, 0.0}, false));     // gaps are the same
+  EXPECT_FALSE(meets(-1e-3 * aside, {0.0, 0.0}, false));     // and here they are not,
+  EXPECT_TRUE(meets(-1e-3 * aside, {0.0, 0.0}, true));       // unless they met before,
+  EXPECT_TRUE(meets(-1e-3 * aside, -2.0 * aside, false));    // or came straight from the corner
+  EXPECT_FALSE(meets(-1e-3 * aside, -2.0 * middle, false));  // not from beside it,
+  const Vec<2> along = direction(1.0 - 0.5 * pi);
+  EXPECT_FALSE(meets(1e-3 * along, along, false));  // or along an edge
+}
+
+}  // namespace
