@@ -205,30 +205,33 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
   const BodyOutline &a = outlines_.list()[i], &b = outlines_.list()[j];
   const double margin = query.lasting == nullptr ? query.margin : any_gap;
   const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
-  const auto add_if_any = [&](const BodyTouch& touch, double most) {
-    if (touch.gap.gap <= most) {
+  const auto add_if_any = [&](const BodyTouch& touch) {
+    const std::size_t before = memory.touching.size();
+    if (touch.gap.gap <= query.margin) {
       memory.touching.push_back(touch);
     } else if (query.lasting != nullptr && query.lasting->contains(key_of(a, b, touch.gap))) {
       add_lasting({i, j, touch.gap, touch.gap.gap / query.lasting->step()}, query, memory);
     }
+    return memory.touching.size() > before;
   };
   if (of_a.size() == 1 && of_b.size() == 1 && margin == any_gap) {
-    return add_if_any({i, j, gap_of_vertices(of_a, 0, of_b, 0), 0.0}, query.margin);
+    add_if_any({i, j, gap_of_vertices(of_a, 0, of_b, 0), 0.0});
+    return;
   }
   std::array<GapPoint, 2> found;
   const int count = find_gaps(of_a, of_b, margin, found);
+  if (count == 0) return;
   BodyTouch first{i, j, found[0], 0.0};
   std::optional<GapPoint> second;
-  if (count > 0 && of_a.radius + of_b.radius == 0.0 && is_near_corner(found[0], lengths_.corner))
+  if (of_a.radius + of_b.radius == 0.0 && is_near_corner(first.gap, lengths_.corner))
     second = second_at_corner(first, query, memory);
+  const bool is_first = add_if_any(first), is_second = second && add_if_any({i, j, *second, 0.0});
   // Where one of two corners that meet touches, so does the other one.
-  const bool both = second && std::min(first.gap.gap, second->gap) <= query.margin;
-  const double most = query.margin + (both ? lengths_.corner : 0.0);
-  if (count > 0) add_if_any(first, most);
-  if (second) add_if_any({i, j, *second, 0.0}, most);
+  if (second && is_first != is_second && std::abs(first.gap.gap - second->gap) <= lengths_.corner)
+    memory.touching.push_back({i, j, is_first ? *second : first.gap, 0.0});
   // One of the same name as the second is of the same corner.
   if (count > 1 && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
-    add_if_any({i, j, found[1], 0.0}, query.margin);
+    add_if_any({i, j, found[1], 0.0});
 }
 
 /// The other contact where two sharp corners meet. \param first changes if the other one comes first

@@ -6,11 +6,11 @@ ContactLook::ContactLook(const Assembly& assembly, const Detector& detector)
     : assembly_(&assembly), detector_(&detector), evaluation_(make_evaluation(assembly)) {}
 
 void ContactLook::find(const StateView& state, double margin, std::vector<Constraint>& out,
-                       const GroundPlaces* after) {
+                       const GroundPlaces* after, const LastingContacts* lasting) {
   evaluate_positions(*assembly_, state, evaluation_);
   detector_->place(state.time, places_);
   out.clear();
-  detector_->find_all({state, evaluation_, places_, after, margin}, search_, out);
+  detector_->find_all({state, evaluation_, places_, after, margin, lasting}, search_, out);
 }
 
 }  // namespace carom

@@ -112,6 +112,7 @@ std::optional<GapPoint> second_contact(GapPoint& first, const CornerMeeting& mee
            edge == (end.is_behind ? of.edge_behind : of.edge_before);
   };
   const bool of_corners = first.kind == GapKind::vertices;
+  if (of_corners && !meeting.lasts && first.gap > meeting.same_place) return {};
   const bool is_lower = of_corners || is_first(cone->lower);
   if (!is_lower && !is_first(cone->upper)) return {};
   if (of_corners) first = gap_along(cone->lower, a, b);

@@ -16,7 +16,7 @@
 #include <carom/core/ids.h>
 #include <carom/core/space.h>
 
-#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace carom {
@@ -94,11 +94,11 @@ struct CornerMeeting {
 /// False of a contact that is so far from the corners at hand that these do not meet, as nearly always.
 /// \param same_place how far apart places are that count as one [m]
 [[nodiscard]] inline bool is_near_corner(const GapPoint& contact, double same_place) {
-  if (contact.kind == GapKind::vertices) return contact.gap <= same_place;
+  if (contact.kind == GapKind::vertices) return true;
   // Farther from a corner than this many depths nothing overlaps along another edge, but of corners so blunt
   // that nobody can tell them from edges.
   constexpr double far = 64.0;
-  return contact.within <= same_place + far * std::max(0.0, -contact.gap);
+  return contact.within <= same_place + far * std::abs(contact.gap);
 }
 
 /// The second contact of two sharp corners that meet: along the other end of their common cone. Nothing where

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace carom {
 
@@ -144,14 +145,15 @@ void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Co
   const int count = pieces_.find(piece, search.placed, search.margin, found);
   if (count == 0) return;
   const std::optional<GapPoint> second = second_at_corner(search, on_ground, found[0]);
+  const double most = search.query.margin, any = std::numeric_limits<double>::infinity();
+  const bool is_first = add(search, on_ground, found[0], most, out),
+             is_second = second && add(search, on_ground, *second, most, out);
   // Where one of two corners that meet touches, so does the other one.
-  const bool both = second && std::min(found[0].gap, second->gap) <= search.query.margin;
-  const double most = search.query.margin + (both ? pieces_.lengths().corner : 0.0);
-  add(search, on_ground, found[0], most, out);
-  if (second) add(search, on_ground, *second, most, out);
+  if (second && is_first != is_second && std::abs(found[0].gap - second->gap) <= pieces_.lengths().corner)
+    add(search, on_ground, is_first ? *second : found[0], any, out);
   // One of the same name as the second is of the same corner.
   if (count > 1 && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
-    add(search, on_ground, found[1], search.query.margin, out);
+    add(search, on_ground, found[1], most, out);
 }
 
 /// The other contact where a sharp corner of a body meets one of the ground. \param first changes if the
@@ -180,23 +182,23 @@ std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, In
 
 /// Appends a contact that is closed, or was and may still be. \param local its gap, in the frame of the
 /// family \param most largest gap of what is closed [m]
-void PieceContacts::add(const Search& search, Index on_ground, const GapPoint& local, double most,
+bool PieceContacts::add(const Search& search, Index on_ground, const GapPoint& local, double most,
                         std::vector<Constraint>& out) const {
   const ContactQuery& query = search.query;
   const GapPoint gap = search.motion == nullptr ? local : in_space(search.frame, local);
   const bool touches = gap.gap <= most;
   const ConstraintKey key = key_of(search.outline, pieces_.outlines()[on_ground], gap);
-  if (!touches && (query.lasting == nullptr || !query.lasting->contains(key))) return;
+  if (!touches && (query.lasting == nullptr || !query.lasting->contains(key))) return false;
   // Deep in the solid a vertex may be before two faces of a chain: it is out of the nearer one first.
   const auto same = std::find_if(out.begin() + static_cast<std::ptrdiff_t>(search.first), out.end(),
                                  [&](const Constraint& other) { return other.key == key; });
-  if (same != out.end() && same->gap <= gap.gap) return;
+  if (same != out.end() && same->gap <= gap.gap) return true;
   const Index shape = pieces_.outlines()[on_ground].shape;
   const GroundAtEnd end = search.motion == nullptr ? GroundAtEnd{} : query.end_of(shapes_, shape);
   Constraint contact;
   fill(key, search.outline, on_ground, gap, query.state, search.motion, end, contact);
   if (!touches) {
-    if (!query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]))) return;
+    if (!query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]))) return false;
     contact.allowed_approach = gap.gap / query.lasting->step();
   }
   if (same != out.end()) {
@@ -204,6 +206,7 @@ void PieceContacts::add(const Search& search, Index on_ground, const GapPoint& l
   } else {
     out.push_back(contact);
   }
+  return true;
 }
 
 void PieceContacts::fill(const ConstraintKey& key, const BodyOutline& a, Index on_ground, const GapPoint& gap,

@@ -90,7 +90,7 @@ private:
   void find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const;
   [[nodiscard]] std::optional<GapPoint> second_at_corner(const Search& search, Index ground,
                                                          GapPoint& first) const;
-  void add(const Search& search, Index ground, const GapPoint& local, double most,
+  bool add(const Search& search, Index ground, const GapPoint& local, double most,
            std::vector<Constraint>& out) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, Index ground, const GapPoint& gap,
             const StateView& state, const GroundMotion* motion, const GroundAtEnd& end,

@@ -61,6 +61,12 @@ void ContactTurning::begin(std::span<const StepIsland> islands, double step, boo
   }
   std::sort(turned_.begin(), turned_.end(),
             [](const Turned& a, const Turned& b) { return is_before(a.start, b.start); });
+  // Corners that meet do so in all of the step.
+  lasting_.start(step);
+  for (const Turned& turned : turned_) {
+    if (turned.start.type == ConstraintType::contact) lasting_.add(turned.start.key);
+  }
+  lasting_.finish();
 }
 
 /// Components of an island whose joints answer contact: not friction in them alone.
@@ -126,7 +132,7 @@ double ContactTurning::reach(const StepInput& in) const {
 }
 
 void ContactTurning::find_at(const State& state, double margin, std::vector<Constraint>& out) {
-  look_.find(state.view(), margin, out);
+  look_.find(state.view(), margin, out, nullptr, &lasting_);
   std::sort(out.begin(), out.end(), is_before);
 }
 

@@ -14,6 +14,7 @@
 /// until its end no longer changes.
 
 #include <carom/contact/detection/contact_look.h>
+#include <carom/contact/detection/lasting_contacts.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
@@ -74,6 +75,7 @@ private:
   void find_at(const State& state, double margin, std::vector<Constraint>& out);
 
   ContactLook look_;
+  LastingContacts lasting_;  // those that turn
   JointStages* joints_;
   double negligible_;
   State middle_, end_;
