@@ -129,8 +129,8 @@ struct ContactCounts {
   double energy_gained = 0.0;          ///< sum of those gains [J]
   std::int64_t lasting_gains = 0;      ///< steps in which lasting contact added energy
   double lasting_gained = 0.0;         ///< sum of those gains [J]
-  /// Sequential impacts that ImpactRules::sequence_limit ended, impacts beyond TimeStepping::most_impacts, and
-  /// steps, or parts of them, in which closings were not located any more (TimeStepping::impacts).
+  /// Sequential impacts that ImpactRules::sequence_limit ended, impacts beyond TimeStepping::most_impacts,
+  /// and steps, or parts of them, in which closings were not located any more (TimeStepping::impacts).
   std::int64_t cut_sequences = 0;
   std::int64_t scaled_impacts = 0;  ///< impacts whose restitution EnergyGain::limit scaled
   std::int64_t plastic_jams = 0;    ///< contact problems without an answer, solved with e = 0

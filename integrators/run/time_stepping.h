@@ -95,9 +95,10 @@ struct TimeStepping {
   /// A contact that closes faster than this is booked as an impact, otherwise as lasting contact. It decides
   /// on terms of the energy ledger, and whether friction in joints that depends on their force takes the
   /// restitution of the contact; and where impacts are located, which end: a contact that closes more slowly
-  /// does not rebound (e = 0), if loads bring it back within 1,000 steps; where they are not, how far contacts that pushed in the step before may be
-  /// open and last: this times the step. On nothing else of the motion [m/s]. Of a limit of an angle: its
-  /// rate times the arm k_a k_b/sqrt(k_a^2 + k_b^2), radii of gyration, up to a power of two.
+  /// does not rebound (e = 0), if loads bring it back within 1,000 steps; where they are not, how far
+  /// contacts that pushed in the step before may be open and last: this times the step. On nothing else of
+  /// the motion [m/s]. Of a limit of an angle: its rate times the arm k_a k_b/sqrt(k_a^2 + k_b^2), radii of
+  /// gyration, up to a power of two.
   double capture_speed = 1e-2;
   ImpactRules impact_rules{};  ///< impacts of several contacts, and those that would add energy
 

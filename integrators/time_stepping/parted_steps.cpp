@@ -94,11 +94,13 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
     make_part(length, end);
     if (closings_) found = closings_->look(done_.state, trial_.state, trial_.companion.modes);
     const bool is_late = searches && closings_->is_late(found);
-    const PassageSearch::Passage first = is_late ? PassageSearch::Passage{} : first_passage();
+    const PassageSearch::Passage first = first_passage();
     const bool passes = first.time < end;
     if (passes) passage = first;
     (is_late || passes ? closed : open) = end;
-    hits = is_late || (searches && !passes && closings_->is_now(found));
+    // A body may be hit on one way and not on another that is hardly longer.
+    if (passes && !(first.time > open)) open = begin;
+    hits = !passes && (is_late || (searches && closings_->is_now(found)));
     if (open == end && (end == whole.end || hits || end == passage.time)) break;
     double next = passes ? first.time : end - (found.gap + aim) / found.rate;
     if (!(next > open && next < closed)) next = 0.5 * (open + closed);

@@ -131,6 +131,12 @@ double PassageSearch::approach_along(const Constraint& contact, int i) const {
 double PassageSearch::approach(const Constraint& contact) const {
   double sum = approach_along(contact, 0);
   if (outline(contact.key.b)->second.is_hollow) sum = std::hypot(sum, approach_along(contact, 1));
+  return sum + turning(contact);
+}
+
+/// How much nearer it may come by turning [m].
+double PassageSearch::turning(const Constraint& contact) const {
+  double sum = 0.0;
   for (int b = 0; b < contact.bodies; ++b) {
     const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
     constexpr int turning = 3;
@@ -200,12 +206,15 @@ double PassageSearch::depth_at_start(const Constraint& contact) const {
 }
 
 /// How far a pair may go before it is looked at again although it is near [m].
-double PassageSearch::stride(const Constraint& contact, double most_deep, double nearer) const {
+double PassageSearch::stride(const Constraint& contact, double most_deep) const {
   if (which_ == Passages::all) return 0.5 * most_deep;
-  // What passes through another thing is in it for at least the radii of the circles in both.
-  constexpr double parts = 16.0;
+  // What passes through another thing is in it for at least the radii of the circles in both. What does not
+  // turn comes to it by the way that is known.
+  constexpr double parts = 64.0;
+  const double turns = turning(contact);
+  if (turns == 0.0) return 0.5 * most_deep;
   const double circles = outline(contact.key.a)->second.circle + outline(contact.key.b)->second.circle;
-  return std::max(circles, nearer / parts);
+  return std::max(circles, turns / parts);
 }
 
 PassageSearch::Passage PassageSearch::first(const State& start, const State& end, StepFlights& flights) {
@@ -235,15 +244,18 @@ PassageSearch::Passage PassageSearch::first_on_chord(const State& start, const S
   }
   if (knows_depths_ || &begin != &start) look(start, 0.0);
   knows_depths_ = true;
+  // Where looks may be far apart one as deep as it may come is not to be missed by rounding.
+  const double enough = which_ == Passages::all ? 0.0 : 0.5;
   for (double share = 0.0;;) {
     double next = 2.0;
     for (const Constraint& contact : contacts_) {
       const double most_deep = allowed(contact);
       const double left = contact.gap + most_deep + depth_at_start(contact);
-      if (!(left > 0.0)) return {share < 1.0 ? start.time + share * step_ : end.time, contact.key};
+      if (!(left > enough * most_deep))
+        return {share < 1.0 ? start.time + share * step_ : end.time, contact.key};
       const double nearer = approach(contact);
       if (!(nearer > 0.0)) continue;
-      next = std::min(next, share + std::max(left, stride(contact, most_deep, nearer)) / nearer);
+      next = std::min(next, share + std::max(left, stride(contact, most_deep)) / nearer);
     }
     if (!(next < 1.0)) return {};
     share = next;

@@ -36,8 +36,8 @@ enum class Passages : std::uint8_t {
   /// All: nothing may be deep in anything.
   all,
   /// Those that closings at the end of the step do not show. Ground without a far side is left out; things
-  /// that turn while they are near each other, and are thinner than a sixteenth of their way in the step, may
-  /// be missed.
+  /// that turn while they are near each other, and are thinner than 1/64 of their way in the step, may be
+  /// missed.
   of_far_sides
 };
 
@@ -75,7 +75,8 @@ private:
   [[nodiscard]] Thicknesses::const_iterator outline(const FeatureKey& key) const;
   [[nodiscard]] Pair pair_of(const Constraint& contact) const;
   [[nodiscard]] double allowed(const Constraint& contact) const;
-  [[nodiscard]] double stride(const Constraint& contact, double most_deep, double nearer) const;
+  [[nodiscard]] double turning(const Constraint& contact) const;
+  [[nodiscard]] double stride(const Constraint& contact, double most_deep) const;
   [[nodiscard]] Passage first_on_chord(const State& start, const State& end, const State& begin);
   [[nodiscard]] double approach_along(const Constraint& contact, int i) const;
   [[nodiscard]] double approach(const Constraint& contact) const;

@@ -1,6 +1,6 @@
-// Shapes on ground whose velocity jumps under bodies: both modes book the same work of the ground and the same
-// losses. The bodies are hit by the ground at its new velocity, w say: a mass m at rest on it takes m w^2 from
-// what moves the ground, half of which is lost.
+// Shapes on ground whose velocity jumps under bodies: both modes book the same work of the ground and the
+// same losses. The bodies are hit by the ground at its new velocity, w say: a mass m at rest on it takes m
+// w^2 from what moves the ground, half of which is lost.
 
 #include "tests/energy/ledger_check.h"
 #include "tests/random.h"
@@ -74,8 +74,9 @@ TEST(GroundJumpBooks, LiftThatStartsAtOnce) {
     for (const ForceRule rule : {ForceRule::trapezoidal, ForceRule::energy_momentum}) {
       for (const double step : {1e-2, 1e-3, 1e-4}) {
         const Books books = run(system, TimeStepping{.step = step, .impacts = impacts, .force_rule = rule});
-        // The weight acts up to a step longer or shorter; half of that step's work is in the loss.
-        const double error = 1.01 * mass * g * speed * step;
+        // Of the impulse of the weight in the step, and of the fall through the gap that the mean velocity of
+        // the step opens, each half the work of the weight over a step is lost; and more in a coarse one.
+        const double error = 1.5 * mass * g * speed * step;
         EXPECT_NEAR(books.external, taken + weight, error) << step;
         EXPECT_NEAR(books.lost, 0.5 * taken, error) << step;
       }
@@ -99,13 +100,16 @@ System riders_on_ground(std::uint64_t seed, double at) {
   PrescribedMotion motion = moves(at, before, behind);
   double surface = 0.0;
   switch (random.below(grounds)) {
-    case half_plane: system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = motion}); break;
+    case half_plane:
+      system.add(HalfPlane{.normal = {0.0, 1.0}, .motion = motion});
+      break;
     case block:
-      system.add(planar::Block{.vertices = {{-2.0, -1.0}, {2.0, -1.0}, {2.0, 0.0}, {-2.0, 0.0}},
-                               .motion = motion});
+      system.add(
+          planar::Block{.vertices = {{-2.0, -1.0}, {2.0, -1.0}, {2.0, 0.0}, {-2.0, 0.0}}, .motion = motion});
       break;
     case terrain:
-      system.add(Terrain{.vertices = {{-2.0, 0.5}, {-1.5, 0.0}, {1.5, 0.0}, {2.0, 0.5}}, .depth = 0.4, .motion = motion});
+      system.add(Terrain{
+          .vertices = {{-2.0, 0.5}, {-1.5, 0.0}, {1.5, 0.0}, {2.0, 0.5}}, .depth = 0.4, .motion = motion});
       break;
     default:
       surface = random.uniform(-0.5, 0.5);
@@ -114,14 +118,18 @@ System riders_on_ground(std::uint64_t seed, double at) {
   const Vec<2> velocity(friction > 0.0 ? before[0] + surface : before[0], before[1]);
   const double mass = random.uniform(0.5, 3.0);
   switch (random.below(riders)) {
-    case particle: system.add(Particle{.mass = mass, .velocity = velocity}); break;
+    case particle:
+      system.add(Particle{.mass = mass, .velocity = velocity});
+      break;
     case ball: {
-      const BodyId body = system.add(
-          RigidBody{.mass = disc(mass, 0.1), .position = {0.0, 0.1}, .velocity = velocity});
+      const BodyId body =
+          system.add(RigidBody{.mass = disc(mass, 0.1), .position = {0.0, 0.1}, .velocity = velocity});
       system.add(Disc{.body = body, .radius = 0.1});
       break;
     }
-    case brick: add_box(system, mass, {0.0, 0.1}, velocity); break;
+    case brick:
+      add_box(system, mass, {0.0, 0.1}, velocity);
+      break;
     default:
       add_box(system, mass, {0.0, 0.1}, velocity);
       add_box(system, random.uniform(0.5, 3.0), {0.02, 0.3}, velocity);
@@ -171,13 +179,13 @@ TEST(GroundJumpBooks, OfAShapeThatBeginsToTurn) {
   system.add(Disc{.body = body, .radius = 0.1});
   const auto until = [&](const Mode& mode) {
     Simulation simulation(system, mode);
-    simulation.run_until(jump + 10.0 * step);
+    simulation.run_until(end);
     return simulation.energy();
   };
   const EnergyLedger exact = until(EventDriven{}), stepped = until(TimeStepping{.step = step});
   EXPECT_GT(exact.flow(EnergyFlow::external), 0.5 * mass * spin * spin * arm * arm);
-  // The weight over two steps.
-  constexpr double error = 2.0 * step * mass * g * spin * arm;
+  // The weight over three steps.
+  constexpr double error = 3.0 * step * mass * g * spin * arm;
   EXPECT_NEAR(stepped.flow(EnergyFlow::external), exact.flow(EnergyFlow::external), error);
   EXPECT_NEAR(stepped.flow(EnergyFlow::rolling), exact.flow(EnergyFlow::rolling), error);
   EXPECT_NEAR(stepped.lost(), exact.lost(), error);

