@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace carom {
 
 JointConstraints::JointConstraints(const Assembly& assembly, Index component)
     : v_(assembly.components()[component].v) {
-  auto pattern = std::make_shared<const JointPattern>(assembly, component, factors_);
+  auto pattern = std::make_shared<const JointPattern>(assembly, component, factors_.by_masses());
   if (pattern->rows() == 0) return;
   jacobian_.assign(pattern->numbers(), 0.0);
   for (std::vector<double>* const numbers : {&gap_, &drift_, &right_}) numbers->assign(pattern->rows(), 0.0);
@@ -44,8 +45,7 @@ void JointConstraints::update_and_factor(const JointView& at) {
 
 void JointConstraints::factor() {
   if (empty()) return;
-  pattern_->multiply(jacobian_.data(), inverse_mass_.data(), v_.begin, factors_.values());
-  factors_.factor();
+  factors_.factor(*pattern_, jacobian_.data(), inverse_mass_, v_.begin);
 }
 
 JointRow JointConstraints::row(std::size_t row) const {
@@ -128,9 +128,50 @@ void JointConstraints::add_transposed(const double* multipliers, double* x) cons
   for_transposed(*pattern_, jacobian_.data(), multipliers, [&](Index v, double sum) { x[v] += sum; });
 }
 
+namespace {
+
+/// Corrects an answer of the factors until what it leaves does not shrink any more. \param left by row, work
+/// \param find_left writes what the present answer leaves \param add takes the correction in `left`
+template <class FindLeft, class Add>
+void refine(JointFactors& factors, std::vector<double>& left, FindLeft&& find_left, Add&& add) {
+  constexpr int most = 20;
+  constexpr double shrinks = 0.5;
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most; ++i) {
+    find_left();
+    double largest = 0.0;
+    for (const double of_row : left) largest = std::max(largest, std::abs(of_row));
+    if (largest == 0.0 || !(largest < shrinks * before)) return;
+    before = largest;
+    for (double& of_row : left) of_row = -of_row;
+    factors.solve(left.data());
+    add();
+  }
+}
+
+}  // namespace
+
 void JointConstraints::solve(double* r) {
-  for (std::size_t i = 0; i < size(); ++i) r[i] = -r[i];
-  factors_.solve(r);
+  if (!factors_.is_uneven()) {
+    for (std::size_t i = 0; i < size(); ++i) r[i] = -r[i];
+    factors_.solve(r);
+    return;
+  }
+  // G M^-1 G^T l is taken as G (M^-1 G^T l): in the product of the matrices light bodies hide heavy ones.
+  given_.assign(r, r + size());
+  std::fill_n(r, size(), 0.0);
+  answer_.assign(v_.size(), 0.0);
+  double* const x = answer_.data() - v_.begin;
+  refine(
+      factors_, right_,
+      [&] {
+        residuals(JointLevel::change, x, right_.data());
+        for (std::size_t i = 0; i < size(); ++i) right_[i] += given_[i];
+      },
+      [&] {
+        add_response(right_.data(), x);
+        for (std::size_t i = 0; i < size(); ++i) r[i] += right_[i];
+      });
 }
 
 void JointConstraints::add_response(const double* multipliers, double* x) const {
@@ -145,10 +186,21 @@ void JointConstraints::apply_inverse_mass(double* x) const {
 
 void JointConstraints::project(JointLevel level, double* x, double* multipliers) {
   if (empty()) return;
-  residuals(level, x, right_.data());
-  solve(right_.data());
-  add_response(right_.data(), x);
-  if (multipliers != nullptr) std::copy(right_.begin(), right_.end(), multipliers);
+  if (!factors_.is_uneven()) {
+    residuals(level, x, right_.data());
+    solve(right_.data());
+    add_response(right_.data(), x);
+    if (multipliers != nullptr) std::copy(right_.begin(), right_.end(), multipliers);
+    return;
+  }
+  if (multipliers != nullptr) std::fill_n(multipliers, size(), 0.0);
+  refine(
+      factors_, right_, [&] { residuals(level, x, right_.data()); },
+      [&] {
+        add_response(right_.data(), x);
+        if (multipliers == nullptr) return;
+        for (std::size_t i = 0; i < size(); ++i) multipliers[i] += right_[i];
+      });
 }
 
 }  // namespace carom

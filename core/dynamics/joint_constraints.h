@@ -10,10 +10,10 @@
 /// The matrix is sparse; its pattern is analysed once.
 
 #include <carom/core/assembly.h>
+#include <carom/core/dynamics/joint_factors.h>
 #include <carom/core/dynamics/joint_pattern.h>
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
-#include <carom/core/numerics/sparse_factors.h>
 
 #include <memory>
 #include <span>
@@ -101,8 +101,8 @@ public:
   /// The joint of a row.
   [[nodiscard]] JointId joint(std::size_t row) const { return pattern_->id(pattern_->joint_of(row)); }
   /// The factors of G M^-1 G^T.
-  [[nodiscard]] const SparseFactors& factors() const { return factors_; }
-  [[nodiscard]] SparseFactors& factors() { return factors_; }
+  [[nodiscard]] const JointFactors& factors() const { return factors_; }
+  [[nodiscard]] JointFactors& factors() { return factors_; }
 
 private:
   Range v_;
@@ -110,8 +110,9 @@ private:
   std::vector<double> jacobian_;            // row by row
   std::vector<double> gap_, rate_, drift_;  // by row; rate_ is empty if nothing depends on time
   std::vector<double> inverse_mass_;        // over v_: masses are diagonal
-  SparseFactors factors_;
+  JointFactors factors_;
   std::vector<double> right_;
+  std::vector<double> given_, answer_;  // where masses are uneven: by row; over v_
 };
 
 }  // namespace carom

@@ -28,6 +28,8 @@ public:
   [[nodiscard]] Index rows() const { return joints_.back().row; }          ///< number of rows
   [[nodiscard]] Index numbers() const { return joints_.back().number; }    ///< numbers of G
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }  ///< true if a row does
+  /// Velocities of a body that are not of angles.
+  [[nodiscard]] Index dimension() const { return static_cast<Index>(assembly_->layout()->dimension()); }
   /// First of the rows of a joint; their number behind the last joint.
   [[nodiscard]] Index first_row(std::size_t joint) const { return joints_[joint].row; }
   /// Joint of a row.

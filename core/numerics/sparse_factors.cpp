@@ -10,70 +10,6 @@
 
 namespace carom {
 
-std::vector<SparseFactors::Place> SparseFactors::analyse(std::span<const Index> sizes,
-                                                         std::span<const std::pair<Index, Index>> entries) {
-  const auto blocks = static_cast<Index>(sizes.size());
-  auto pattern = std::make_shared<Pattern>();
-  const std::vector<Index> order = elimination_order(blocks, entries);
-  std::vector<Index> position(blocks), first_row(blocks);
-  std::exclusive_scan(sizes.begin(), sizes.end(), first_row.begin(), Index{0});
-  pattern->row_begin.assign(1, 0);
-  pattern->own_begin.assign(1, 0);
-  for (Index i = 0; i < blocks; ++i) {
-    const Index size = sizes[order[i]];
-    position[order[i]] = i;
-    pattern->given_row.push_back(first_row[order[i]]);
-    pattern->row_begin.push_back(pattern->row_begin.back() + size);
-    pattern->own_begin.push_back(pattern->own_begin.back() + size * (size - 1) / 2);
-    pattern->most = std::max(pattern->most, size);
-  }
-  pattern->own_size = pattern->own_begin.back();
-  pattern->uniform = pattern->row_begin.back() == pattern->most * blocks;
-
-  // The permuted lower triangle by rows.
-  struct Entry {
-    Index row, column, given;
-  };
-  std::vector<Entry> sorted;
-  sorted.reserve(entries.size());
-  std::vector<Place> places(entries.size());
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const Index a = position[entries[i].first], b = position[entries[i].second];
-    places[i].transposed = a < b;
-    sorted.push_back({std::max(a, b), std::min(a, b), static_cast<Index>(i)});
-  }
-  std::sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
-    return a.row < b.row || (a.row == b.row && a.column < b.column);
-  });
-  pattern->entry_begin.assign(blocks + 1, 0);
-  pattern->entry_column.reserve(sorted.size());
-  for (const Entry& entry : sorted) {
-    places[entry.given].first = static_cast<Index>(pattern->values_size);
-    pattern->values_size += std::size_t{pattern->rows(entry.row)} * pattern->rows(entry.column);
-    pattern->entry_column.push_back(entry.column);
-    ++pattern->entry_begin[entry.row + 1];
-  }
-  for (Index i = 0; i < blocks; ++i) pattern->entry_begin[i + 1] += pattern->entry_begin[i];
-  pattern->number_fill();
-  pattern_ = std::move(pattern);
-  for (std::vector<double>* const numbers : {&values_, &lower_, &own_, &pivot_, &relative_pivot_, &work_}) {
-    numbers->clear();
-  }
-  return places;
-}
-
-/// The fill, and where the numbers of its blocks begin.
-void SparseFactors::Pattern::number_fill() {
-  find_fill(entry_begin, entry_column);
-  below_number.assign(below_row.size(), 0);
-  for (Index j = 0; j < blocks(); ++j) {
-    for (Index k = below_begin[j]; k < below_begin[j + 1]; ++k) {
-      below_number[k] = static_cast<Index>(lower_size);
-      lower_size += std::size_t{rows(j)} * rows(below_row[k]);
-    }
-  }
-}
-
 std::vector<double>& SparseFactors::values() {
   if (pattern_ && work_.empty()) {
     values_.assign(pattern_->values_size, 0.0);
@@ -101,10 +37,10 @@ void SparseFactors::with_rows(F&& f) const {
 namespace {
 
 /// Factorises a block on the diagonal, from which the blocks before it have been subtracted in `d`. \param
-/// own its numbers of L \param relative pivots against `diagonal`
+/// own its numbers of L \param relative pivots against `diagonal` \param left_out rows that are; null: none
 template <Index Rows>
-void factor_diagonal(Index rows, const double* diagonal, double least_pivot, double* d, double* own,
-                     double* pivots, double* relative) {
+void factor_diagonal(Index rows, const double* diagonal, double least_pivot, const char* left_out, double* d,
+                     double* own, double* pivots, double* relative) {
   const Index n = Rows == 0 ? rows : Rows;
   const double* const first_own = own;
   for (Index r = 0; r < n; ++r) {
@@ -122,15 +58,17 @@ void factor_diagonal(Index rows, const double* diagonal, double least_pivot, dou
     const double whole = diagonal[r * n + r];
     relative[r] = whole > 0.0 ? pivot / whole : 0.0;
     // With an infinite pivot nothing comes from the row and nothing goes to it.
-    pivots[r] = pivot > least_pivot * whole ? pivot : std::numeric_limits<double>::infinity();
+    const bool kept = pivot > least_pivot * whole && (left_out == nullptr || left_out[r] == 0);
+    pivots[r] = kept ? pivot : std::numeric_limits<double>::infinity();
   }
 }
 
 }  // namespace
 
-/// Row of blocks by row of blocks. \tparam Rows of all blocks; 0 where they differ
+/// Row of blocks by row of blocks. \tparam Rows of all blocks; 0 where they differ \param left_out by row of
+/// the matrix, not 0 where it is; null: none
 template <Index Rows>
-void SparseFactors::factor_blocks(double least_pivot) {
+void SparseFactors::factor_blocks(double least_pivot, const char* left_out) {
   const Pattern& at = *pattern_;
   constexpr Index room = Rows == 0 ? most_rows : Rows;
   const Index most = Rows == 0 ? at.most : Rows;
@@ -182,13 +120,14 @@ void SparseFactors::factor_blocks(double least_pivot) {
         }
       }
     }
-    factor_diagonal<Rows>(n, diagonal, least_pivot, d.data(), own_.data() + at.own_begin[i],
+    const char* const of_block = left_out == nullptr ? nullptr : left_out + at.given_row[i];
+    factor_diagonal<Rows>(n, diagonal, least_pivot, of_block, d.data(), own_.data() + at.own_begin[i],
                           pivot_.data() + first, relative_pivot_.data() + at.given_row[i]);
   }
 }
 
-void SparseFactors::factor_down_to(double least_pivot) {
-  with_rows([&](auto rows) { factor_blocks<decltype(rows)::value>(least_pivot); });
+void SparseFactors::factor_down_to(double least_pivot, const char* left_out) {
+  with_rows([&](auto rows) { factor_blocks<decltype(rows)::value>(least_pivot, left_out); });
 }
 
 void SparseFactors::factor() {
@@ -196,6 +135,14 @@ void SparseFactors::factor() {
   if (values().empty()) return;
   factor_down_to(dependent_pivot);
   if (reveals_rank_ && is_doubtful()) factor_weak_rows();
+}
+
+void SparseFactors::factor_without(std::span<const char> left_out) {
+  // Of the diagonal: a pivot below is rounding.
+  constexpr double rounding = 1e-15;
+  weak_.clear();
+  if (values().empty()) return;
+  factor_down_to(rounding, left_out.data());
 }
 
 /// True if a small pivot may have magnified the rounding of a pivot that decides.

@@ -51,6 +51,10 @@ public:
   void reveal_rank(bool reveals) { reveals_rank_ = reveals; }
   /// Factorises the numbers.
   void factor();
+  /// Factorises the numbers where it is known which rows follow from others: these are left out and no other
+  /// one, however small its pivot is, but for rounding.
+  /// \param left_out by row of the matrix, not 0 where it follows from others
+  void factor_without(std::span<const char> left_out);
   /// x becomes a solution of A x = x.
   void solve(double* x);
   /// The combination of rows that vanishes, for given shares of those that were left out.
@@ -93,8 +97,8 @@ private:
     void number_fill();
   };
   template <Index Rows>
-  void factor_blocks(double least_pivot);
-  void factor_down_to(double least_pivot);
+  void factor_blocks(double least_pivot, const char* left_out);
+  void factor_down_to(double least_pivot, const char* left_out = nullptr);
   [[nodiscard]] bool is_doubtful() const;
   void factor_weak_rows();
   void multiply(const double* x, double* out) const;
