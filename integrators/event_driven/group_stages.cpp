@@ -2,6 +2,7 @@
 
 #include <carom/core/dynamics/force_directions.h>
 #include <carom/core/numerics/union_find.h>
+#include <carom/integrators/event_driven/closed_joints.h>
 #include <carom/integrators/event_driven/group_stages.h>
 
 #include <algorithm>
@@ -81,6 +82,7 @@ void accept_step(GroupParts& group, EventBalance& balance) {
   if (group.motion.active().list().empty() && group.motion.joints().rows().empty()) return;
   MotionSample& now = group.memory->instant.now;
   group.motion.sample(group.clock.now, group.y.data(), Forces::all, now);
+  demand_closed(group.motion, now, group.failure);
   if (group.projection.apply(now, group.y, balance)) flow.correct(group.y);
 }
 
@@ -111,6 +113,7 @@ bool ground_jumps(const GroupParts& group, const MotionSample& now) {
 
 void arrive_at(const Event& event, GroupParts& group, EventInstant& at) {
   group.motion.sample(at.time, at.y.data(), Forces::all, at.now);
+  demand_closed(group.motion, at.now, group.failure);
   at.take_accelerations_before();
   // A meeting is counted where groups meet: others join at an event of one of them.
   if (event.guard != Guard::meeting) group.limits.count_event(event, at.y.data(), at.now);
@@ -171,6 +174,7 @@ void write_output(double target, GroupParts& group, EventBalance& balance) {
     if (!group.motion.joints().rows().empty()) {
       MotionSample& then = group.memory->instant.now;
       group.motion.sample(target, group.output.y().data(), Forces::all, then);
+      demand_closed(group.motion, then, group.failure);
       projected = group.projection.apply_to_output(then, group.output.y(), balance);
     }
   }
