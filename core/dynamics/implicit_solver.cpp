@@ -33,10 +33,13 @@ struct ImplicitSolver::Factors {
 };
 
 /// Factors A with the rows of the joints. One that follows from others, whose pivot would vanish, is given a
-/// small one: which of the answers for such rows comes out makes no difference to the bodies.
+/// small one: which of the answers for such rows comes out makes no difference to the bodies. The others get
+/// none: beside the mass of a light body it would be a large one for a heavy body.
 bool ImplicitSolver::Factors::surround(const Border& joints) {
   // Against the row's own diagonal in G M^-1 G^T: small even where stiff couplings make G A^-1 G^T smaller.
   constexpr double least_pivot = 1e-13;
+  // Pivots of rows that, but for rounding and some way from where they were factored, may follow from others.
+  constexpr double doubtful_pivot = 1e-6;
   const auto index = [&](Index i) { return static_cast<int>(i - v.begin); };
   const auto size = static_cast<int>(v.size());
   rows = static_cast<Index>(joints.held.size());
@@ -62,7 +65,14 @@ bool ImplicitSolver::Factors::surround(const Border& joints) {
         diagonal += number * number / matrix.coeff(column, column);
       }
     }
-    triplets.emplace_back(place, place, -least_pivot * diagonal);
+    const bool may_follow = joints.held.factors().pivot(i) < doubtful_pivot;
+    triplets.emplace_back(place, place, may_follow ? -least_pivot * diagonal : 0.0);
+  }
+  for (const MatrixNumber& of : joints.of_reactions) {
+    triplets.emplace_back(index(of.row), index(of.column), -of.number);
+  }
+  for (const MatrixNumber& of : joints.of_conditions) {
+    triplets.emplace_back(size + static_cast<int>(of.row), index(of.column), of.number);
   }
   const int all = size + static_cast<int>(rows);
   bordered_matrix.resize(all, all);
@@ -154,7 +164,7 @@ ImplicitSolver::Outcome ImplicitSolver::factor(const Assembly& assembly, Index c
   return self.factors.vectorD().minCoeff() > 0.0 ? Outcome::definite : Outcome::indefinite;
 }
 
-void ImplicitSolver::solve(double* f, const double* r) const {
+void ImplicitSolver::solve(double* f, const double* r, double* l) const {
   const auto size = static_cast<Eigen::Index>(factors_->v.size());
   Eigen::Map<Eigen::VectorXd> map(f, size);
   if (factors_->rows == 0) {
@@ -169,6 +179,8 @@ void ImplicitSolver::solve(double* f, const double* r) const {
   }
   const Eigen::VectorXd solution = factors_->bordered.solve(right);
   map = solution.head(size);
+  if (l == nullptr) return;
+  for (Index i = 0; i < factors_->rows; ++i) l[i] = -solution[size + static_cast<Eigen::Index>(i)];
 }
 
 void ImplicitSolver::subtract_matrix(const double* v, double* p) const {

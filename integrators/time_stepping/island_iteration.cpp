@@ -138,8 +138,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   }
   if (joined) parts_->joined.start(in, island, *contacts.problem, parts_->trial);
   if (joints != nullptr) {
-    const bool guesses = method_.current() == Iteration::fixed_point;
-    joints->start(in, parts_->rule, guesses, contacts, parts_->trial);
+    joints->start(in, parts_->rule, method_.current(), contacts, parts_->trial);
   }
   if (!method_.is_newton()) return;
   demand(method_.newton().start(in, parts_->rule, front, joints, contacts.problem, parts_->trial), front, in);
@@ -212,7 +211,7 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
   if (joined) {
     sweep_joined(island, in);
   } else if (joints != nullptr) {
-    if (newton) {
+    if (newton && contacts.problem != nullptr) {
       demand(method_.newton().step_with_joints(in, parts_->rule, front, *joints, contacts.problem,
                                                contacts.chain, parts_->trial),
              front, in);
@@ -243,6 +242,10 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
 
 void IslandIteration::sweep_joints(const StepInput& in, Index component, JointStage& joints,
                                    JointContacts& contacts) {
+  if (method_.is_newton() && contacts.problem == nullptr) {
+    return demand(method_.newton().sweep_untouched(in, parts_->rule, joints.iterate(), parts_->trial),
+                  component, in);
+  }
   if (joints.sweep(in, parts_->rule, contacts, parts_->trial)) return;
   parts_->errors(in, component).fail_contact(*contacts.problem);
 }
@@ -280,7 +283,8 @@ void IslandIteration::follow(const StepInput& in, Index component) {
 /// bring the joints there however badly couplings contract. True if there were any.
 bool IslandIteration::converge_joints(const StepIsland& island, const StepInput& in) {
   constexpr double improved = 0.8;
-  constexpr double open = 1e5;                   // roundings
+  constexpr double open = 1e5;  // roundings
+  const Index front = island.components.front();
   JointStage* const joints = joints_of(island);  // null: of several components
   const auto violation = [&] {
     return joints != nullptr ? joints->violation(in, parts_->trial)
@@ -292,15 +296,19 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
   JointContacts contacts = contacts_of(island);
   for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
     if (joints != nullptr) {
-      sweep_joints(in, island.components.front(), *joints, contacts);
+      sweep_joints(in, front, *joints, contacts);
     } else {
       sweep_joined(island, in);
+    }
+    if (method_.is_newton() && contacts.problem == nullptr) {  // it asks for the loads where bodies are
+      follow(in, front);
+      parts_->schedule.evaluate(parts_->stages(in, front), LoadsKnown::total, false);
     }
     const double now = violation();
     if (!(now < improved * left)) break;
     left = now;
   }
-  if (joints != nullptr && left > open) demand_closed(*joints, in, island.components.front(), *parts_);
+  if (joints != nullptr && left > open) demand_closed(*joints, in, front, *parts_);
   if (is_near_singular()) joints->settle_velocities(parts_->trial);
   for (const Index component : island.components) follow(in, component);
   return true;

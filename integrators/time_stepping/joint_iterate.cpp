@@ -58,8 +58,12 @@ void JointIterate::correct_impulses(const StepInput& in, const StepTrial& trial)
     rows.at_end().residuals(JointLevel::velocity, sum.data(), left.data());
   }
   rows.solve(left);
-  clear(arrays->dv_joints);
   for (std::size_t row = 0; row < left.size(); ++row) impulse[row] += left[row];
+  find_reactions();
+}
+
+void JointIterate::find_reactions() {
+  clear(arrays->dv_joints);
   rows.at_midpoint().add_transposed(impulse.data(), arrays->dv_joints.data());
   rows.at_end().apply_inverse_mass(arrays->dv_joints.data());
 }
@@ -72,15 +76,18 @@ void JointIterate::move_bodies(const StepInput& in, const StepRule& rule, StepTr
   rule.move(in, all.bodies, true, trial);
 }
 
-/// Reactions to the loads, with the rows of the iterate.
-void JointIterate::react(const StepInput& in, const StepRule& rule, StepTrial& trial) {
+void JointIterate::place(const StepInput& in, StepTrial& trial, bool first) {
   const Range q = assembly->components()[component].q, v = this->v();
   std::copy(trial.end.q.begin() + q.begin, trial.end.q.begin() + q.end, arrays->before_q.begin() + q.begin);
   std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end, arrays->before_v.begin() + v.begin);
   rows.place(in, trial);
   // Choosing factors the rows at the end.
-  if (!trial.account.swept) rows.choose(in, trial, left);
-  if (trial.account.swept || rows.reactions() == Reactions::mixed) rows.factor();
+  if (first) rows.choose(in, trial, left);
+  if (!first || rows.reactions() == Reactions::mixed) rows.factor();
+}
+
+void JointIterate::react(const StepInput& in, const StepRule& rule, StepTrial& trial) {
+  place(in, trial, !trial.account.swept);
   find_free_velocities(in, rule, trial);
   correct_impulses(in, trial);
 }
@@ -95,8 +102,7 @@ void JointIterate::return_to_joints(const StepInput& in, StepTrial& trial) {
   rows.place_gaps(in, trial);
   for (Index i = v.begin; i < v.end; ++i) arrays->scratch[i] = -arrays->displacement[i];
   rows.at_end().residuals(JointLevel::displacement, arrays->scratch.data(), left.data());
-  rows.solve(left);
-  rows.pushing().add_response(left.data(), arrays->scratch.data());
+  rows.add_displacement(left, arrays->scratch);
   for (Index i = v.begin; i < v.end; ++i) arrays->displacement[i] += arrays->scratch[i];
   displace(arrays->scratch, trial.end);
 }
@@ -109,9 +115,8 @@ void JointIterate::return_near_singular(const StepInput& in, StepTrial& trial) {
     rows.place_end(in, trial);
     rows.factor();
     for (std::size_t row = 0; row < left.size(); ++row) left[row] = rows.at_end().gaps()[row];
-    rows.solve(left);
     clear(arrays->scratch);
-    rows.pushing().add_response(left.data(), arrays->scratch.data());
+    rows.add_displacement(left, arrays->scratch);
     for (Index i = v.begin; i < v.end; ++i) arrays->displacement[i] += arrays->scratch[i];
     displace(arrays->scratch, trial.end);
   }

@@ -50,6 +50,11 @@ struct CAROM_API JointIterate {
   void find_free_velocities(const StepInput& in, const StepRule& rule, StepTrial& trial) const;
   /// One step of Newton's method for G1 v_{j+1} + rate = 0; along mean rows for g(q_{j+1}, t_{j+1}) = 0.
   void correct_impulses(const StepInput& in, const StepTrial& trial);
+  /// Changes of velocity by the impulses along the rows of the reactions.
+  void find_reactions();
+  /// Brings the rows to the iterate, and factors them. The iterate is kept as that before.
+  /// \param first of the step: chooses the rows of the reactions
+  void place(const StepInput& in, StepTrial& trial, bool first);
   /// Reactions to the loads, with the rows of the iterate. The iterate before is kept.
   void react(const StepInput& in, const StepRule& rule, StepTrial& trial);
   /// Bodies move, and back onto the joints.

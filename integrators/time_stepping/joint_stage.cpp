@@ -76,17 +76,19 @@ JointStage::JointStage(const Assembly& assembly, Index component, Index first_ro
   std::sort(breaks_.begin(), breaks_.end());
 }
 
-void JointStage::start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
-                       StepTrial& trial) {
+void JointStage::start(const StepInput& in, const StepRule& rule, Iteration iteration,
+                       JointContacts& contacts, StepTrial& trial) {
   trial.expect_impulses();
   joints_.clear(joints_.arrays->dv_contact);
   struck_ = std::any_of(contacts.constraints.begin(), contacts.constraints.end(),
                         [](const Constraint& constraint) { return !constraint.has_dry_friction(); });
   // Mean rows give velocities by their mean with those before: behind a jump they would alternate for ever.
   const bool mean = rule.is_mean() && contacts.problem == nullptr && !may_jump(breaks_, in);
-  guessed_ =
-      guesses && contacts.problem == nullptr && mean == rule.is_mean() && untouched_.start(in, rule, trial);
+  const bool untouched = contacts.problem == nullptr;
+  guessed_ = iteration == Iteration::fixed_point && untouched && mean == rule.is_mean() &&
+             untouched_.start(in, rule, trial);
   if (!guessed_) begin_at_start(in, mean, trial);
+  if (iteration == Iteration::linearly_implicit && untouched) untouched_.guess_impulses(in);
   if (!struck_ && !answer_.rows().depends_on_time()) return;
   answer_.place(in, trial);
   if (!struck_) return;

@@ -76,9 +76,9 @@ public:
   /// outlive it
   JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays);
 
-  /// The first guess: by the steps before where they say anything and it is wanted, else no reactions, and
-  /// the positions that the present velocities lead to.
-  void start(const StepInput& in, const StepRule& rule, bool guesses, JointContacts& contacts,
+  /// The first guess: by the steps before where they say anything and the iteration has a use for it, else no
+  /// reactions, and the positions that the present velocities lead to.
+  void start(const StepInput& in, const StepRule& rule, Iteration iteration, JointContacts& contacts,
              StepTrial& trial);
   /// One sweep. False if the contact problem is not solved.
   [[nodiscard]] bool sweep(const StepInput& in, const StepRule& rule, JointContacts& contacts,

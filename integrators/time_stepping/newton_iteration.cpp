@@ -25,7 +25,10 @@ NewtonIteration::Outcome NewtonIteration::start(const StepInput& in, const StepR
     trial.loads_guess[i] = rule.is_mean() ? 0.0 : -in.companion.loads.total[i];
   }
   if (contact != nullptr) contact->forget_impulses();
-  if (joints != nullptr) joints->rows().place(in, trial);
+  if (joints != nullptr) {
+    joints->rows().place(in, trial);
+    joints->rows().at_end().factor();
+  }
   if (!linearise(in, component, in.start.view(), trial.at_start, joints, contact)) return Outcome::singular;
   matrix_.add_stiffness_times(rule.is_mean() ? 0.5 * in.step : in.step, in.start.v.data(),
                               trial.loads_end.total.data());
@@ -122,6 +125,91 @@ NewtonIteration::Outcome NewtonIteration::step_with_joints(const StepInput& in, 
     trial.loads_guess[i] = trial.loads_end.total[i] + scratch_[i] / weight;
   }
   return Outcome::done;
+}
+
+/// Brings the rows to the first iterate. Light bodies that swing fast end a step near where they began it,
+/// and not where their velocities point to: so bodies are at the start of the step, with its velocities. That
+/// is no end of a step: ahead_ is by how much velocities would be larger if they led there.
+void NewtonIteration::begin_untouched(const StepInput& in, const StepRule& rule, JointIterate& joints,
+                                      StepTrial& trial) {
+  const Range v = joints.v(), q = in.assembly.components()[joints.component].q;
+  joints.place(in, trial, true);
+  const std::vector<double>& impulse = joints.impulse;
+  if (std::all_of(impulse.begin(), impulse.end(), [](double number) { return number == 0.0; })) {
+    // Without reactions, bodies would be guessed to go wherever rows of the guess push them.
+    trial.loads_guess.swap(trial.loads_end.total);
+    joints.find_free_velocities(in, rule, trial);
+    joints.correct_impulses(in, trial);
+    trial.loads_guess.swap(trial.loads_end.total);
+  }
+  // Near singular positions the rows of the reactions were chosen for where the iteration begins.
+  if (joints.rows.reactions() != Reactions::halfway) return;
+  std::copy(in.start.q.begin() + q.begin, in.start.q.begin() + q.end, trial.end.q.begin() + q.begin);
+  joints.place(in, trial, false);
+  for (Index i = v.begin; i < v.end; ++i) ahead_[i] = 2.0 * in.start.v[i];
+}
+
+NewtonIteration::Outcome NewtonIteration::sweep_untouched(const StepInput& in, const StepRule& rule,
+                                                          JointIterate& joints, StepTrial& trial) {
+  const Range v = joints.v();
+  ahead_.resize(trial.end.v.size());
+  std::fill(ahead_.begin() + v.begin, ahead_.begin() + v.end, 0.0);
+  if (trial.account.swept) {
+    joints.place(in, trial, false);
+  } else {
+    begin_untouched(in, rule, joints, trial);
+    trial.account.swept = true;
+  }
+  if (!correct_untouched(in, rule, joints, trial)) return Outcome::singular;
+  const double weight = rule.impulse_weight(in.step);
+  matrix_.apply_mass(update_.data(), scratch_.data());
+  matrix_.subtract_matrix(update_.data(), scratch_.data());
+  for (Index i = v.begin; i < v.end; ++i) {
+    trial.loads_guess[i] = trial.loads_end.total[i] + scratch_[i] / weight;
+  }
+  joints.find_free_velocities(in, rule, trial);
+  for (Index i = v.begin; i < v.end; ++i) {
+    joints.arrays->dv_joints[i] = trial.end.v[i] + update_[i] - trial.free[i];
+  }
+  joints.move_onto_joints(in, rule, trial);
+  return Outcome::done;
+}
+
+/// Solves for d, into update_, and corrects L. False if the matrix is singular.
+bool NewtonIteration::correct_untouched(const StepInput& in, const StepRule& rule, JointIterate& joints,
+                                        StepTrial& trial) {
+  const Range v = joints.v();
+  turn_.differentiate(in, joints, trial);
+  JointConstraints& end = joints.rows.at_end();
+  const ImplicitSolver::Border border{end, joints.rows.at_midpoint(), turn_.of_reactions(),
+                                      turn_.of_conditions()};
+  const auto outcome =
+      matrix_.factor(in.assembly, joints.component, trial.end.view(), trial.at_end, in.step, &border);
+  if (outcome == ImplicitSolver::Outcome::singular) return false;
+  const double weight = rule.impulse_weight(in.step), half = 0.5 * in.step;
+  joints.find_free_velocities(in, rule, trial);
+  joints.find_reactions();
+  for (Index i = v.begin; i < v.end; ++i) {
+    scratch_[i] = trial.free[i] + joints.arrays->dv_joints[i] - trial.end.v[i];
+  }
+  matrix_.apply_mass(scratch_.data(), update_.data());
+  for (Index i = v.begin; i < v.end; ++i) {
+    update_[i] += weight * (trial.loads_end.total[i] - trial.loads_guess[i]);
+  }
+  for (const MatrixNumber& of : turn_.of_reactions()) update_[of.row] += of.number * ahead_[of.column];
+  residuals_.resize(end.size());
+  multipliers_.resize(end.size());
+  if (joints.rows.is_mean()) {
+    for (Index i = v.begin; i < v.end; ++i) scratch_[i] = half * ahead_[i];
+    end.residuals(JointLevel::displacement, scratch_.data(), residuals_.data());
+    for (double& gap : residuals_) gap /= half;
+  } else {
+    end.residuals(JointLevel::velocity, trial.end.v.data(), residuals_.data());
+  }
+  for (const MatrixNumber& of : turn_.of_conditions()) residuals_[of.row] += of.number * ahead_[of.column];
+  matrix_.solve(update_.data() + v.begin, residuals_.data(), multipliers_.data());
+  for (std::size_t row = 0; row < end.size(); ++row) joints.impulse[row] += multipliers_[row];
+  return true;
 }
 
 SweepChange NewtonIteration::change(const StepInput& in, Index component, const StepTrial& trial) const {

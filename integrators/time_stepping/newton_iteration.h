@@ -10,12 +10,22 @@
 /// leads to the guess  x' = x + (M d - H^T (P' - P)) / w. Where joints bind bodies,
 ///
 ///     A d - Gm^T l = w (g - x) + H^T (P' - P),   G (v + d) + rate = 0,   x' = g + (M - A) d / w.
+///
+/// Where nothing touches or rubs, reactions L and conditions are linearised too as their rows turn, and the
+/// iterate is (v, L) itself: with R and B of joint_turn.h, at v, its loads g and rows,
+///
+///     (A - R) d - Gm^T l = M (v_free(g) - v) + Gm^T L,   (G + B) d = -(G v + rate),   v' = v + d,   L' = L +
+///     l.
+///
+/// Reactions of a light body, made anew along rows that have turned by rounding, would move it by much more
+/// than that; v' is kept as it is.
 
 #include <carom/contact/delassus.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/dynamics/implicit_solver.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
+#include <carom/integrators/time_stepping/joint_turn.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_rule.h>
 #include <carom/integrators/time_stepping/step_trial.h>
@@ -42,6 +52,9 @@ public:
   [[nodiscard]] Outcome step_with_joints(const StepInput& in, const StepRule& rule, Index component,
                                          JointStage& joints, IslandProblem* contact, SolverChain& chain,
                                          StepTrial& trial);
+  /// A sweep where joints bind bodies and nothing touches or rubs.
+  [[nodiscard]] Outcome sweep_untouched(const StepInput& in, const StepRule& rule, JointIterate& joints,
+                                        StepTrial& trial);
   /// Change by the last step.
   [[nodiscard]] SweepChange change(const StepInput& in, Index component, const StepTrial& trial) const;
   /// Takes note of how the iteration contracts: badly with a matrix that is out of date.
@@ -50,11 +63,15 @@ public:
 private:
   [[nodiscard]] bool linearise(const StepInput& in, Index component, const StateView& at,
                                const Evaluation& evaluation, JointStage* joints, IslandProblem* contact);
+  void begin_untouched(const StepInput& in, const StepRule& rule, JointIterate& joints, StepTrial& trial);
+  [[nodiscard]] bool correct_untouched(const StepInput& in, const StepRule& rule, JointIterate& joints,
+                                       StepTrial& trial);
 
   ImplicitSolver matrix_;
   bool stale_ = false;  // the matrix is to be made anew
   Delassus by_masses_;  // impulses as the sweep behind applies them
-  std::vector<double> update_, scratch_, residuals_;
+  JointTurn turn_;
+  std::vector<double> update_, scratch_, residuals_, multipliers_, ahead_;
 };
 
 }  // namespace carom

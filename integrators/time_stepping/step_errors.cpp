@@ -2,6 +2,7 @@
 
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/coupling_rating.h>
+#include <carom/core/dynamics/light_bodies.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/core/listed.h>
 #include <carom/core/run_error.h>
@@ -210,6 +211,15 @@ void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iterat
     }
     if (!jumping.empty()) message += ", or contact does, which changes between modes: " + listed(jumping);
     failure.parts.insert(failure.parts.end(), jumping.begin(), jumping.end());
+  }
+  if (joints != nullptr) {
+    const std::string light = light_bodies(in_.assembly, component_, failure.parts);
+    message += light;
+    if (!light.empty() && options_.force_rule == ForceRule::trapezoidal) {
+      message +=
+          " (allowed: masses nearer to each other, or force_rule energy_momentum, under which bodies "
+          "that swing fast keep their energy)";
+    }
   }
   fail(message, failure);
 }

@@ -1,5 +1,6 @@
 // Problem: say why the end that an iteration has found is no motion from the start of the step.
 
+#include <carom/core/dynamics/light_bodies.h>
 #include <carom/core/listed.h>
 #include <carom/core/system.h>
 #include <carom/integrators/time_stepping/far_turn.h>
@@ -39,10 +40,11 @@ void StepErrors::fail_open(JointId joint, double gap) const {
   SolverFailure failure = this->failure();
   failure.residual = gap;
   failure.parts.push_back(system().name(joint));
-  const std::string turn = tell_turn(failure);
-  fail(failure.parts.front() + " stays open by " + to_text(failure.residual) + " at the end of the step" +
-           turn + "; allowed: a step in which bodies move less, for instance " +
-           to_text(failure.suggested_step) + " s",
+  const std::string turn = tell_turn(failure), name = failure.parts.front();
+  const std::string light = light_bodies(in_.assembly, component_, failure.parts);
+  fail(name + " stays open by " + to_text(failure.residual) + " at the end of the step" + turn +
+           "; allowed: a step in which bodies move less, for instance " + to_text(failure.suggested_step) +
+           " s" + light,
        failure);
 }
 

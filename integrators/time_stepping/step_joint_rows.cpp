@@ -178,6 +178,21 @@ void StepJointRows::solve(std::vector<double>& r) {
   }
 }
 
+void StepJointRows::add_displacement(std::vector<double>& r, std::vector<double>& x) {
+  JointFactors& factors = end_.factors();
+  if (reactions_ == Reactions::mixed || !factors.is_uneven()) {
+    solve(r);
+    pushing().add_response(r.data(), x.data());
+    return;
+  }
+  for (double& gap : r) gap = -gap;
+  factors.solve_alike(r.data());
+  const Range v = end_.velocities();
+  along_.assign(x.size(), 0.0);
+  end_.add_transposed(r.data(), along_.data());
+  for (Index i = v.begin; i < v.end; ++i) x[i] += factors.alike()[i - v.begin] * along_[i];
+}
+
 bool StepJointRows::correct_velocities(StepTrial& trial, std::vector<double>& residuals) {
   end_.update(view_of(trial.end, trial.at_end));
   end_.residuals(JointLevel::velocity, trial.end.v.data(), residuals.data());

@@ -56,6 +56,10 @@ public:
   void factor();
   /// r becomes multipliers of the reactions.
   void solve(std::vector<double>& r);
+  /// Adds to x, over all velocities, a displacement that takes gaps r away: the smallest in the mass norm.
+  /// Where masses are uneven it is the smallest of bodies that weigh alike: a light body between heavy ones
+  /// would go far across its joints for the small way that they might go along them. r becomes multipliers.
+  void add_displacement(std::vector<double>& r, std::vector<double>& x);
   /// Brings velocities onto the joints where bodies are now, by the mixed rows: where rounding of positions
   /// turns rows too much. False if that matrix is singular. \param residuals work, then multipliers
   [[nodiscard]] bool correct_velocities(StepTrial& trial, std::vector<double>& residuals);
@@ -83,6 +87,7 @@ private:
   Index component_;
   JointConstraints end_, midpoint_;
   MixedConstraints mixed_;
+  std::vector<double> along_;  // G^T l where masses are uneven
   Reactions reactions_ = Reactions::halfway;
   double roundoff_growth_ = 1.0;
   bool near_singular_ = false, regular_ = false, mean_ = false;

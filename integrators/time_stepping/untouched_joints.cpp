@@ -33,6 +33,12 @@ bool UntouchedJoints::start(const StepInput& in, const StepRule& rule, StepTrial
   return joints.rows.begin_regular(in, rule.is_mean(), trial);
 }
 
+void UntouchedJoints::guess_impulses(const StepInput& in) {
+  const JointHistory& history = in.companion.joints;
+  if (history.usable(iterate_->component, rows_.end, in.step) == 0) return;
+  history.impulses.guess(rows_, 1, iterate_->impulse.data() - rows_.begin);
+}
+
 void UntouchedJoints::sweep(const StepInput& in, const StepRule& rule, StepTrial& trial) {
   // Factors of the first iterate serve all, as they change by what rows turn between two iterates, unless
   // that does not help.
@@ -102,9 +108,8 @@ void UntouchedJoints::return_to_joints(const StepInput& in, StepTrial& trial) {
     arrays.scratch[i] = half * (trial.end.v[i] - arrays.before_v[i]) - arrays.displacement[i];
   }
   joints.rows.at_end().residuals(JointLevel::displacement, arrays.scratch.data(), joints.left.data());
-  joints.rows.solve(joints.left);
   joints.clear(arrays.displacement);
-  joints.rows.pushing().add_response(joints.left.data(), arrays.displacement.data());
+  joints.rows.add_displacement(joints.left, arrays.displacement);
   joints.displace(arrays.displacement, trial.end);
 }
 

@@ -21,6 +21,8 @@ public:
   /// The first iterate, under the loads of the guess. False where no step is remembered or a row is near to
   /// following from others: then there is none.
   [[nodiscard]] bool start(const StepInput& in, const StepRule& rule, StepTrial& trial);
+  /// Impulses of the last step as a guess at those of this one; none where it is not remembered.
+  void guess_impulses(const StepInput& in);
   /// One sweep.
   void sweep(const StepInput& in, const StepRule& rule, StepTrial& trial);
   /// Change that another sweep would make where the joints are obeyed, else that the sweep has made.
