@@ -8,6 +8,8 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace carom {
@@ -39,6 +41,11 @@ struct ActiveContact {
   /// Factor that makes a normal force of distances from the edge of friction, for moments against rolling
   /// too.
   [[nodiscard]] double margin_scale() const { return rolls() ? 1.0 / friction : 1.0; }
+  /// The least of its normal force and, where it sticks, its distance from the edge of friction [N].
+  [[nodiscard]] double margin() const {
+    const double edge = sticks() ? margin_scale() * (friction * normal - std::abs(tangential)) : normal;
+    return at.has_dry_friction() ? edge : std::min(normal, edge);
+  }
   /// Sign of the sliding velocity, 0 if it sticks.
   [[nodiscard]] double slip_sign() const {
     return mode == ContactMode::slip_positive ? 1.0 : mode == ContactMode::slip_negative ? -1.0 : 0.0;

@@ -10,9 +10,6 @@ namespace carom {
 
 namespace {
 
-// A pivot below this part of the largest one is rounding: the constraint follows from the others.
-constexpr double dependent = 1e-11;
-
 /// W_ii of bodies that answer for themselves, without friction: what a row is made of [1/kg].
 double own_response(const ImpulseDirection& direction, const BodyResponse& response) {
   const Constraint& at = *direction.constraint;

@@ -50,6 +50,14 @@ struct CAROM_API ActiveSetMemory {
 /// add_reactions() holds until another set finds its forces.
 class CAROM_API ActiveSet {
 public:
+  /// A pivot below this part of the largest one is rounding: its constraint is taken to follow from the others.
+  static constexpr double dependent = 1e-11;
+  /// Velocities and accelerations that may be left along a constraint that is taken to follow from others,
+  /// against those of the bodies. A pivot goes with the square of the row, which may keep sqrt(dependent) =
+  /// 3e-6 of them, and levers in piles amplify that thirtyfold: bodies that lie flush on each other, to within
+  /// their last movements, stick and slip by less than this without anything being able to tell.
+  static constexpr double left_by_dependent = 1e-4;
+
   /// \param memory must outlive it
   explicit ActiveSet(ActiveSetMemory& memory) : memory_(&memory) {}
   /// Tells which joints bind the bodies; they must outlive it, and be located wherever forces are asked for.
@@ -74,6 +82,8 @@ public:
     if (contacts_.empty()) return {};  // no forces were asked for
     return memory_->pivots;
   }
+  /// True if the forces of the last add_reactions() are not unique: constraints follow from others.
+  [[nodiscard]] bool has_open_forces() const { return memory_->margins.has_vectors(); }
   /// Calls f(first, numbers) for every change of the forces of the last add_reactions() that no constraint
   /// feels, as ForceMargins::for_vectors(): others may have found other forces.
   template <class F>

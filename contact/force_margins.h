@@ -34,6 +34,8 @@ public:
   /// least margin by chance do not set it (ActiveContact::sets_margin).
   /// \param mark whether to find out which contacts set the margin
   void distribute(std::span<ActiveContact> contacts, bool mark);
+  /// True if there are null vectors.
+  [[nodiscard]] bool has_vectors() const { return !vectors_.empty(); }
   /// Calls f(first, numbers) for every null vector, numbers: a normal and a tangential force for each contact
   /// of a group in turn, beginning with the contact `first`.
   template <class F>

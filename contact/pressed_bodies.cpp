@@ -2,6 +2,7 @@
 
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/errors.h>
+#include <carom/core/listed.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +23,7 @@ std::string moving_along(std::size_t row, const System& system, std::span<const 
     const std::string name = system.name(ObstacleId{ground.serial, system.token()});
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
+  return listed(names);
 }
 
 }  // namespace

@@ -23,7 +23,6 @@ namespace {
 
 /// Names all contacts that leave no room between them, the deepest first.
 [[noreturn]] void fail_wedged(const Detector& detector, const GapProjection::Result& result, double time) {
-  constexpr std::size_t most = 12;  // of a pile all the same says nothing
   std::vector<Constraint> contacts(result.together.begin(), result.together.end());
   std::stable_sort(contacts.begin(), contacts.end(),
                    [](const Constraint& a, const Constraint& b) { return a.gap < b.gap; });
@@ -32,7 +31,7 @@ namespace {
   failure.residual = -result.left->gap;
   for (const Constraint& contact : contacts) failure.parts.push_back(detector.name(contact.key));
   const std::string message = "change to the event-driven mode at t = " + to_text(time) +
-                              " s: no displacement opens the gaps of " + listed(failure.parts, most) +
+                              " s: no displacement opens the gaps of " + listed(failure.parts) +
                               " together; left is " + to_text(result.left->gap) +
                               " m; allowed: bodies that have room";
   throw SolverError(message, std::move(failure));

@@ -1,4 +1,5 @@
 #include <carom/core/dynamics/prescribed_joints.h>
+#include <carom/core/listed.h>
 
 #include <limits>
 #include <string>
@@ -35,16 +36,14 @@ void PrescribedJoints::demand_continuous(double from, double to) {
 }
 
 std::string driven_by(const Assembly& assembly, Index component) {
-  std::string text;
+  std::vector<std::string> names;
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     if (!assembly.joint_kinds()[k]->depends_on_time()) continue;
     const Range range = assembly.joints(component, k);
-    for (Index joint = range.begin; joint < range.end; ++joint) {
-      text += (text.empty() ? "; bodies are driven by " : ", ") +
-              assembly.system().name(assembly.joint_id(k, joint));
-    }
+    for (Index joint = range.begin; joint < range.end; ++joint)
+      names.push_back(assembly.system().name(assembly.joint_id(k, joint)));
   }
-  return text;
+  return names.empty() ? std::string{} : "; bodies are driven by " + listed(names);
 }
 
 }  // namespace carom

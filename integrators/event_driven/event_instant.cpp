@@ -19,7 +19,9 @@ EventInstant::EventInstant(SmoothMotion& group, InstantMemory& memory, double at
       before(memory.before),
       before_at(memory.before_at),
       islands(memory.islands),
+      stopped(memory.stopped),
       balance(books) {
+  stopped.clear();
   // Who asks has contact pairs.
   if (!motion.model().pairs.empty()) acceleration_before.resize(now.acceleration.size());
 }

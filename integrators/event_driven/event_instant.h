@@ -14,6 +14,7 @@
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -31,6 +32,7 @@ struct CAROM_API InstantMemory {
   std::vector<ActiveContact> before;
   std::vector<Index> before_at;
   EventIslands islands;
+  std::vector<Index> stopped;
 };
 
 /// One instant of one clock group.
@@ -49,7 +51,9 @@ struct CAROM_API EventInstant {
   std::vector<ActiveContact>& before;  ///< contacts that were closed before the event
   std::vector<Index>& before_at;       ///< by pair: which of them, `none` if it was open
   EventIslands& islands;               ///< bodies that touch each other, found by find_islands()
-  EventBalance& balance;               ///< books
+  /// Pairs whose slow sliding is stopped at this instant, found by ImpactSettling.
+  std::vector<Index>& stopped;
+  EventBalance& balance;  ///< books
   EventScales scales{};                ///< of the phase to come
   double touch_gap = 0.0;              ///< gaps up to here touch, by find_touch_gap() [m]
   /// The rate of a driver, or of a shape on ground, jumps: contacts that were closed approach without having
@@ -73,6 +77,12 @@ struct CAROM_API EventInstant {
     const Constraint& contact = contacts[pair];
     return contact.rows > 0 &&
            (contact.gap <= touch_gap || (before_at[pair] != none && std::isfinite(contact.gap)));
+  }
+  /// True if the sliding of a pair is one that was stopped at this instant: constraints that follow from
+  /// others to rounding leave some of it, which is no sliding. \param slip [m/s]
+  [[nodiscard]] bool is_stopped(Index pair, double slip) const {
+    return std::abs(slip) <= ActiveSet::left_by_dependent * scales.speed &&
+           std::find(stopped.begin(), stopped.end(), pair) != stopped.end();
   }
   /// Distance that bodies are not moved by during the event, projections included [m]: a longer way may lead
   /// into what is not in their island.

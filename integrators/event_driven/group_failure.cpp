@@ -2,6 +2,7 @@
 
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/coupling_rating.h>
+#include <carom/core/listed.h>
 #include <carom/core/run_error.h>
 #include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/run/failure_file.h>
@@ -48,8 +49,8 @@ void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
     parts.push_back(assembly.system().name(model_->first_body()));
     message += "; component of " + parts.front();
   } else {
-    message += ":";
-    for (const std::string& part : parts) message += " " + part + (part == parts.back() ? "" : ",");
+    const bool of_problem = problem != nullptr && parts.size() == problem->problem().groups().size();
+    message += ": " + listed(of_problem ? worst_first(parts, problem->report().worst_group) : parts);
   }
   SolverFailure failure;
   failure.time = clock_->output;

@@ -30,6 +30,8 @@ std::vector<std::string> nearly_singular(const JointConstraints& joints, const S
   return names;
 }
 
+const Constraint& contact_of(const ActiveContact& closed) { return closed.at; }
+
 }  // namespace
 
 void GroupLimits::start(double time) {
@@ -112,6 +114,23 @@ void GroupLimits::count_event(const Event& event, const double* y, MotionSample&
   failure_->fail(what, parts_of(event, memory));
 }
 
+/// Names of the contacts of bodies that touch, those whose forces are nearest to the end of their modes first.
+/// \param island of the active set
+std::vector<std::string> GroupLimits::names_by_margin(std::size_t island) const {
+  ActiveSet& active = motion_->active();
+  std::vector<ForceMargin> margins;
+  active.margins(margins);
+  std::vector<ActiveContact> closed = active.list();
+  if (island < margins.size()) {
+    const auto first = closed.begin() + static_cast<std::ptrdiff_t>(margins[island].first);
+    closed = {first, closed.begin() + static_cast<std::ptrdiff_t>(margins[island].last)};
+  }
+  std::stable_sort(closed.begin(), closed.end(), [](const ActiveContact& a, const ActiveContact& b) {
+    return a.margin() < b.margin();
+  });
+  return failure_->names(closed, contact_of);
+}
+
 /// Names of the parts of an event; empty where it is of no part, or of nothing that touches.
 std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionSample& at) const {
   const System& system = motion_->model().assembly->system();
@@ -134,10 +153,7 @@ std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionS
     }
     return names;
   }
-  // A force, or a sum of them: of any that touches.
-  names.reserve(closed.size());
-  for (const ActiveContact& contact : closed) names.push_back(failure_->name(contact.at));
-  return names;
+  return event.guard == Guard::force ? names_by_margin(event.which) : failure_->names(closed, contact_of);
 }
 
 void GroupLimits::fail_evaluations() const {

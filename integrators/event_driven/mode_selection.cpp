@@ -190,7 +190,8 @@ void ModeSelection::collect_candidates(std::span<const Index> pairs, const Event
     if (contact.has_dry_friction()) candidate.stiffness = std::numeric_limits<double>::infinity();
     const double slip = contact.type == ConstraintType::limit ? 0.0 : contact.tangential_velocity(velocity);
     const double noise = at.scales.noise_of(at.motion, contact);
-    candidate.slip = std::abs(slip) > noise && candidate.pair != stopped_ ? slip : 0.0;
+    const bool rests = candidate.pair == stopped_ || (!rolling && at.is_stopped(i, slip));
+    candidate.slip = std::abs(slip) > noise && !rests ? slip : 0.0;
     candidate.frictionless = !rolling && contact.law.sticking_friction() == 0.0;
     const auto same = [&](const auto& other) { return other.pair == candidate.pair; };
     if (at.before_at[i] != none) candidate.present = at.before[at.before_at[i]].mode;

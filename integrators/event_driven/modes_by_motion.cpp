@@ -118,6 +118,15 @@ bool forces_may_move(std::span<const Constraint> contacts, std::span<const std::
   return slides && closed > 1;
 }
 
+bool law_allows(std::span<const ActiveContact> closed, std::span<const ForceMargin> margins) {
+  return std::all_of(margins.begin(), margins.end(), [&](const ForceMargin& margin) {
+    double largest = 0.0;
+    for (std::size_t i = margin.first; i < margin.last; ++i)
+      largest = std::max(largest, std::abs(closed[i].normal));
+    return margin.margin >= -clear_force * largest;
+  });
+}
+
 namespace {
 
 /// Writes numbers of closed contacts, normal and tangential, to the rows of a problem; 0 elsewhere.

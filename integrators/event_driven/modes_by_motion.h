@@ -33,6 +33,10 @@ struct DecidedContacts {
   double small;                              ///< accelerations up to this are zero [m/s^2]
 };
 
+/// A force this small against the others of its island may be rounding: constraints that follow from each
+/// other, to rounding, leave forces open.
+inline constexpr double clear_force = 1e-6;
+
 /// Memory of motion_apart().
 struct MotionComparison {
   std::vector<double> force, none, answered, given;  ///< by row
@@ -62,6 +66,10 @@ CAROM_API void fix_extreme_friction(const DecidedContacts& decided, const Island
 [[nodiscard]] CAROM_API bool forces_may_move(std::span<const Constraint> contacts,
                                              std::span<const std::size_t> taking_part,
                                              std::span<const Candidate> candidates);
+/// True if no force of closed contacts pulls, or exceeds friction, by more than rounding.
+/// \param margins of these forces
+[[nodiscard]] CAROM_API bool law_allows(std::span<const ActiveContact> closed,
+                                        std::span<const ForceMargin> margins);
 /// Gives candidates modes, and the friction of their laws. \param modes by candidate
 inline void take_modes(std::span<const ContactMode> modes, std::span<Candidate> candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {

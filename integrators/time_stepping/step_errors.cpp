@@ -26,8 +26,9 @@ std::string place(const StepInput& in) {
   return "time stepping at t = " + to_text(in.start.time) + " s, step " + to_text(in.step) + " s: ";
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  return carom::listed(names, 12);  // of a pile all the same says nothing
+/// Names of the contacts of a problem for a message: that where the residual is taken first.
+std::string contacts_of(const IslandProblem& problem, const SolverFailure& failure) {
+  return listed(worst_first(failure.parts, problem.report().worst_group));
 }
 
 [[noreturn]] void refuse(const char* option, double value, const char* allowed) {
@@ -233,7 +234,7 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
     demand_finite_loads(in_.start.view());
     if (trial_.account.swept) demand_finite_loads(trial_.end.view());
   }
-  std::string message = "contact problem of " + listed(failure.parts) + ": ";
+  std::string message = "contact problem of " + contacts_of(problem, failure) + ": ";
   if (problem.report().usable()) {
     message += unsettled_friction;
   } else {
@@ -316,7 +317,7 @@ void StepErrors::fail_projection(const Constraint& left) const {
 
 void StepErrors::fail_impacts(const IslandProblem& problem, const char* what) const {
   SolverFailure failure = failure_of(problem);
-  fail(what + ("; of " + listed(failure.parts)), failure);
+  fail(what + ("; of " + contacts_of(problem, failure)), failure);
 }
 
 void StepErrors::refuse_gain(const IslandProblem& problem, double gain) const {

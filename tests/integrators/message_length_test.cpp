@@ -1,0 +1,118 @@
+// Messages of errors: as long as one reads, in both modes, whatever the scene.
+
+#include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/random.h"
+
+#include <carom/carom.h>
+#include <carom/core/listed.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+namespace {
+
+using namespace body_scenes;
+using carom_test::Random;
+
+/// True of text in UTF-8 without a part of a character at a cut: names in it are of two bytes, 0xC3 0xA4.
+bool has_whole_characters(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool first = text[i] == '\xC3', second = text[i] == '\xA4';
+    if (first && (i + 1 == text.size() || text[i + 1] != '\xA4')) return false;
+    if (second && (i == 0 || text[i - 1] != '\xC3')) return false;
+  }
+  return true;
+}
+
+/// A heap of discs and boxes in a channel whose walls close: nothing keeps it, at the latest when they meet.
+System pressed_heap(std::uint64_t seed) {
+  Random random(seed);
+  System system;
+  system.add(Gravity{{0.0, -g}});
+  system.set_default_law({.friction = random.uniform(0.0, 0.8), .normal_restitution = 0.0});
+  system.add(HalfPlane{.normal = {0.0, 1.0}});
+  system.add(HalfPlane{.point = {0.0, 4.0}, .normal = {0.0, -1.0}});
+  const double speed = random.uniform(1.0, 3.0), carried = random.uniform(-2.0, 2.0);
+  for (const double side : {-1.0, 1.0}) {
+    PrescribedMotion motion;
+    motion.position = [=](double t) { return Vec<2>(-side * speed * t, 0.0); };
+    motion.velocity = [=](double) { return Vec<2>(-side * speed, 0.0); };
+    system.add(HalfPlane{.point = {0.7 * side, 0.0}, .normal = {-side, 0.0}, .surface_speed = carried,
+                         .motion = motion});
+  }
+  const std::string name(random.below(2) == 0 ? 0 : 300, 'x');
+  for (int i = 0; i < 12; ++i) {
+    const Vec<2> place(0.4 * (i % 3 - 1) + random.uniform(-0.03, 0.03), 0.2 + 0.35 * (i / 3));
+    const double mass = random.below(4) == 0 ? 1e9 : 1.0;
+    const BodyId body = random.below(2) == 0 ? add_disc(system, mass, 0.12, place)
+                                             : add_box(system, mass, 0.2, 0.15, place);
+    std::string of_body = name + std::to_string(i);
+    for (int k = 0; k < (name.empty() ? 0 : 100); ++k) of_body += "\xC3\xA4";
+    system.set_name(body, of_body);
+  }
+  return system;
+}
+
+/// Runs into an error, and looks at its message. True if there was one.
+bool fails(const System& system, const Mode& mode) {
+  try {
+    Simulation simulation(system, mode);
+    simulation.run_until(1.0);
+  } catch (const SolverError& error) {
+    const std::string_view what = error.what();
+    EXPECT_LE(what.size(), longest_message) << what;
+    EXPECT_TRUE(has_whole_characters(what)) << what;
+    EXPECT_FALSE(error.failure().parts.empty()) << what;
+    return true;
+  }
+  return false;
+}
+
+void run(std::uint64_t seeds) {
+  int event_driven = 0, stepped = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    SCOPED_TRACE(seed);
+    const System system = pressed_heap(seed);
+    event_driven += fails(system, EventDriven{.record_events = false, .evaluation_limit = 20'000}) ? 1 : 0;
+    stepped += fails(system, TimeStepping{.step = 2e-3}) ? 1 : 0;
+  }
+  EXPECT_GT(event_driven, 0);
+  testing::Test::RecordProperty("event_driven", std::to_string(event_driven));
+  testing::Test::RecordProperty("stepped", std::to_string(stepped));
+}
+
+TEST(MessageLength, OfHeapsThatArePressed) { run(3); }
+TEST(MessageLengthLong, OfHeapsThatArePressed) { run(40); }
+
+// Of a contact problem of thirty contacts the message names three, the failure all.
+TEST(MessageLength, ThreePartsAreNamedAndTheOthersCounted) {
+  const std::vector<std::string> names(30, "polygon #1 (feature 1) of rigid body #1 on half-plane #0");
+  EXPECT_TRUE(listed(names).ends_with(" and 27 more"));
+  EXPECT_LT(listed(names).size(), 250U);
+}
+
+TEST(MessageLength, WorstIsNamedFirst) {
+  EXPECT_EQ(listed(worst_first({"a", "b", "c", "d"}, 2)), "c, a, b and 1 more");
+  EXPECT_EQ(listed(worst_first({"a", "b"}, -1)), "a, b");
+  EXPECT_EQ(listed(worst_first({"a", "b"}, 7)), "a, b");
+}
+
+TEST(MessageLength, LongTextsLoseTheirMiddle) {
+  EXPECT_EQ(shortened("short", 16), "short");
+  const std::string text = shortened("begin " + std::string(1000, '-') + " end", 100);
+  EXPECT_EQ(text.size(), 100U);
+  EXPECT_TRUE(text.starts_with("begin "));
+  EXPECT_TRUE(text.ends_with(" end"));
+  std::string umlauts;
+  for (int i = 0; i < 500; ++i) umlauts += "\xC3\xA4";
+  for (std::size_t most = 16; most < 40; ++most) {
+    EXPECT_LE(shortened(umlauts, most).size(), most);
+    EXPECT_TRUE(has_whole_characters(shortened(umlauts, most)));
+  }
+  const SolverError error(std::string(2000, 'x'), {});
+  EXPECT_EQ(std::string_view(error.what()).size(), longest_message);
+}
+
+}  // namespace
