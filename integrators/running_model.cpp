@@ -14,13 +14,14 @@
 
 namespace carom {
 
-ModeMachines::ModeMachines(const Assembly& assembly, const Mode& mode, const StopRequest& stop) {
+ModeMachines::ModeMachines(const Assembly& assembly, const Mode& mode, const StopRequest& request)
+    : stop(&request) {
   if (const auto* options = std::get_if<TimeStepping>(&mode)) {
-    stepper = std::make_unique<TimeStepper>(assembly, *options, &stop);
+    stepper = std::make_unique<TimeStepper>(assembly, *options, stop);
     controller = std::make_unique<StepController>(assembly, *options);
     if (PartedSteps::needed(assembly, *stepper)) parted = std::make_unique<PartedSteps>(assembly, *stepper);
   } else {
-    driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), &stop);
+    driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), stop);
   }
 }
 
@@ -57,8 +58,9 @@ void ModeMachines::advance(const Run& run, double limit) {
 }
 
 void ModeMachines::advance_unseen(const Run& run, double limit) {
+  stop->begin();
   try {
-    run.unlisted = driver->advance(run.state, run.companion, limit, run.report, run.events);
+    run.unlisted = driver->advance(run.state, run.companion, limit, run.report, run.events, true);
     StepGrid(run.mode).skip_to(run.companion, limit);
   } catch (const RunError& error) {
     advance_while_good(run, limit);
@@ -67,7 +69,12 @@ void ModeMachines::advance_unseen(const Run& run, double limit) {
     failure.time = run.state.time;
     throw RunError(error.what(), std::move(failure));
   } catch (...) {
-    advance_while_good(run, limit);
+    // Whoever interrupts does not wait for intervals.
+    if (stop->interrupted()) {
+      stand_where_reached(run);
+    } else {
+      advance_while_good(run, limit);
+    }
     throw;
   }
 }
@@ -78,6 +85,17 @@ void ModeMachines::advance_while_good(const Run& run, double limit) {
   const double good = driver->good_until();
   const StepGrid grid(run.mode);
   while (run.state.time < limit && std::min(grid.next(run.companion), limit) <= good) advance(run, limit);
+}
+
+/// Where that state is not good either, the run stands where it began.
+void ModeMachines::stand_where_reached(const Run& run) {
+  const double before = run.state.time;
+  try {
+    run.unlisted = driver->stand_where_reached(run.state, run.companion, run.report, run.events);
+  } catch (const RunError&) {
+    return;
+  }
+  if (run.state.time > before) StepGrid(run.mode).skip_to(run.companion, run.state.time);
 }
 
 RunningModel::Prepared RunningModel::prepare(State& start) const {

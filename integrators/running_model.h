@@ -31,7 +31,7 @@ struct Run {
 
 /// Machines of a mode, over one assembly.
 struct ModeMachines {
-  ModeMachines(const Assembly& assembly, const Mode& mode, const StopRequest& stop);
+  ModeMachines(const Assembly& assembly, const Mode& mode, const StopRequest& request);
   /// Detector of contacts.
   [[nodiscard]] const Detector& detector() const {
     return stepper ? stepper->detector() : driver->detector();
@@ -40,16 +40,19 @@ struct ModeMachines {
   /// One step, to the next time of the grid (StepGrid), or to a time before it [s].
   void advance(const Run& run, double limit);
   /// In the event-driven mode: to a time at once, without output in between. Impacts are left unlisted. Where
-  /// that fails, the state is that of the last interval before the failure.
+  /// that fails, the state is that of the last interval before the failure; where it is interrupted, the run
+  /// stands at a time that was reached before.
   void advance_unseen(const Run& run, double limit);
 
   std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode
   std::unique_ptr<StepController> controller;  ///< likewise
   std::unique_ptr<PartedSteps> parted;         ///< null where no step has to be parted
   std::unique_ptr<EventDriver> driver;         ///< null in time stepping
+  const StopRequest* stop;                     ///< asked within steps
 
 private:
   void advance_while_good(const Run& run, double limit);
+  void stand_where_reached(const Run& run);
 };
 
 /// Assembly and machines.

@@ -160,7 +160,12 @@ void Simulation::remove_callback(const CallbackId& callback) {
 
 void Simulation::stop_when(StopFunction stop) {
   impl_->guard.demand("stop_when", CallGuard::Need::no_step);
-  impl_->stop = StopRequest(std::move(stop));
+  impl_->stop.stop_when(std::move(stop));
+}
+
+void Simulation::interrupt_when(StopFunction stop, ReachedFunction reached) {
+  impl_->guard.demand("interrupt_when", CallGuard::Need::no_step);
+  impl_->stop.interrupt_when(std::move(stop), std::move(reached));
 }
 
 void Simulation::edit(const std::function<void(System&)>& change) {

@@ -78,6 +78,12 @@ public:
   /// Asks `stop` again and again within steps; when it returns true they end with Cancelled, at the last good
   /// state. An empty function ends the asking. What it throws comes out unchanged.
   void stop_when(StopFunction stop);
+  /// Asks `stop` as often as stop_when() does, for somebody who waits at a keyboard: nobody looks at the run
+  /// for it, which has the same bits and steps as without (EventDriven::interval). A run of the event-driven
+  /// mode that it ends leaves the simulation at a time that was reached a moment of the clock on the wall
+  /// before, so that little is lost of a long run. `reached` gets, now and then, times [s] that such a run
+  /// has reached and state() has not. Empty functions end the asking.
+  void interrupt_when(StopFunction stop, ReachedFunction reached = {});
 
   /// Changes a copy of the model, assembles it and transfers the state by identity; new bodies start as
   /// described. An error changes nothing. The change of the energy is booked as `intervention`. Throws

@@ -9,11 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace carom {
 
 /// The event as one page. The last step may end behind the target, events at the target are resolved.
-void ClockGroup::advance(double target, EventBalance& balance) try {
+void ClockGroup::advance(double target, bool output, EventBalance& balance) try {
   parts_.memory->motion.limit.restart();
   bool is_reachable = false;
   for (;;) {
@@ -38,10 +39,29 @@ void ClockGroup::advance(double target, EventBalance& balance) try {
       accept_step(parts_, balance);
     }
   }
-  write_output(target, parts_, balance);  // changes nothing of the run
-  parts_.flow.leave(
-      parts_.phase.kind == Phase::at_rest,
-      parts_.motion.model().parts().size() == parts_.motion.model().assembly->components().size());
+  if (output) write_output(target, parts_, balance);  // changes nothing of the run
+  leave_flow();
+} catch (const EvaluationLimit::Reached&) {
+  parts_.limits.fail_evaluations();
+}
+
+/// Lets other groups have the flow.
+void ClockGroup::leave_flow() {
+  const GroupModel& model = parts_.motion.model();
+  parts_.flow.leave(parts_.phase.kind == Phase::at_rest,
+                    model.parts().size() == model.assembly->components().size());
+}
+
+void ClockGroup::look_at(double time, State& state, ContactModes& modes, EventBalance& balance) try {
+  parts_.memory->motion.limit.restart();
+  const GroupClock clock = parts_.clock;
+  GroupOutput before = parts_.output;
+  const bool was_borrowed = parts_.flow.is_borrowed();
+  write_output(time, parts_, balance);
+  if (!was_borrowed) leave_flow();
+  write(state, modes);
+  parts_.output = std::move(before);
+  parts_.clock = clock;
 } catch (const EvaluationLimit::Reached&) {
   parts_.limits.fail_evaluations();
 }
@@ -95,6 +115,7 @@ void ClockGroup::start(const State& state, const ContactModes& present) {
   parts_.clock = {state.time, state.time};
   parts_.motion.model().unknowns.gather(state, parts_.y);
   parts_.output.start(parts_.y);
+  parts_.books = {};
   parts_.phase = {Phase::at_event, {state.time, Guard::start}};
   parts_.impacts.start();
   parts_.modes.start();

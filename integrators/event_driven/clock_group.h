@@ -34,9 +34,12 @@ public:
   /// Starts at a state; throws as demand_start(). \param present modes of contacts before, if known, by key
   void start(const State& state, const ContactModes& present);
   /// Goes on to a time, not before the present; events at that very time included. Throws SolverError: the
-  /// group must then be started anew.
-  void advance(double target, EventBalance& balance);
-  /// Time last advanced to [s].
+  /// group must then be started anew. \param output true: its output state is the one then
+  void advance(double target, bool output, EventBalance& balance);
+  /// Writes the state and the modes at a time last advanced to without output, which changes nothing of the
+  /// group. \param balance gets the works up to there
+  void look_at(double time, State& state, ContactModes& modes, EventBalance& balance);
+  /// Time of the last output [s].
   [[nodiscard]] double time() const { return parts_.clock.output; }
   /// Time up to which its motion is decided [s].
   [[nodiscard]] double now() const { return parts_.clock.now; }
@@ -58,6 +61,7 @@ public:
 
 private:
   void close_known_contacts(const ContactModes& present);
+  void leave_flow();
 
   GroupParts parts_;
 };

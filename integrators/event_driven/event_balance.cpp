@@ -46,6 +46,31 @@ void EventBalance::clear() {
   energy_gain = shift = 0.0;
 }
 
+void EventBalance::add(const GroupBooks& books) {
+  for (std::size_t term = 0; term < flows.values.size(); ++term) {
+    flows.values[term] += books.flows.values[term];
+  }
+  energy_gain += books.energy_gain;
+}
+
+void EventBalance::copy_totals(const EventBalance& from) {
+  flows = from.flows;
+  counts = from.counts;
+  tally = from.tally;
+  joint_impulses.assign(from.joint_impulses.begin(), from.joint_impulses.end());
+  energy_gain = from.energy_gain;
+  shift = from.shift;
+}
+
+void EventBalance::return_to(const EventBalance& earlier, double time) {
+  copy_totals(earlier);
+  fresh.clear();
+  order_events();
+  std::size_t kept = events.size();
+  while (kept > 0 && events.time(kept - 1) > time) --kept;
+  events.drop_last(events.size() - kept);
+}
+
 void EventBalance::settle() {
   for (const EventRecord& event : fresh) {
     if (event.kind == EventKind::impact && event.impulse[0] > 0.0) ++tally.impacts;
@@ -72,6 +97,10 @@ void EventBalance::finish() {
   settle();
   order_events();
   keep_latest();
+  const auto earlier = [](const JointImpulse& a, const JointImpulse& b) { return a.time < b.time; };
+  if (!std::is_sorted(joint_impulses.begin(), joint_impulses.end(), earlier)) {
+    std::stable_sort(joint_impulses.begin(), joint_impulses.end(), earlier);
+  }
   std::int64_t last = 0, number = -1;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const std::int64_t instant = events.instant(i);

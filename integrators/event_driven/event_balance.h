@@ -55,6 +55,13 @@ struct EventTally {
   double worst_residual = 0.0;
 };
 
+/// Sums of an advance of one clock group. Groups that go each to the end have their own, so that a sum does
+/// not depend on how often they take turns.
+struct GroupBooks {
+  EnergyFlows flows;         ///< energy that left it
+  double energy_gain = 0.0;  ///< by its impacts [J]
+};
+
 /// Energy that left clock groups, and what happened to them, since it was last cleared.
 struct CAROM_API EventBalance {
   EventBalance() = default;
@@ -72,6 +79,17 @@ struct CAROM_API EventBalance {
 
   /// Begins anew. Memory stays.
   void clear();
+  /// Exchanges the sums with those of a group, which goes on.
+  void exchange(GroupBooks& books) {
+    std::swap(flows, books.flows);
+    std::swap(energy_gain, books.energy_gain);
+  }
+  /// Adds the sums of a group.
+  void add(const GroupBooks& books);
+  /// Copies what was booked so far, but for records, which have times.
+  void copy_totals(const EventBalance& from);
+  /// Lets go of what is later than the copy of an earlier time [s], and of what was begun.
+  void return_to(const EventBalance& earlier, double time);
   /// The records so far are complete, and of one instant: counts them, and lets go of those that are not to
   /// be kept.
   void settle();

@@ -53,7 +53,8 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
       trial_(assembly.layout()),
       balance_({.records = options.record_events.choice() != EventRecords::nothing,
                 .limit = static_cast<std::size_t>(options.record_limit),
-                .zero_impulses = options.record_events.choice() == EventRecords::all}) {
+                .zero_impulses = options.record_events.choice() == EventRecords::all}),
+      stop_(stop) {
   constexpr std::size_t few = 8;
   modes_.reserve(few);
   if (!detector_.bodies_touch()) return;
@@ -98,17 +99,52 @@ void EventDriver::start(const State& state, const Companion& companion) {
 }
 
 std::size_t EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
-                                 RecordedEvents& events) {
+                                 RecordedEvents& events, bool may_be_interrupted) {
   demand_laws(state.time, target);
+  good_until_ = state.time;
   StoredEnergies stored;
   try {
-    stored = reach(state, companion, target);
+    if (!started_) start(state, companion);
+    advance_groups(state.time, target, may_be_interrupted && stop_ != nullptr && stop_->may_interrupt());
+    good_until_ = target;
+    modes_.clear();
+    groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
+    stored = account(state.time, target);
   } catch (...) {
     // Steps of groups ahead of the state are of no use after an error.
     started_ = false;
     memory_.chain.reset_statistics();
     throw;
   }
+  return commit(state, companion, stored, report, events);
+}
+
+std::size_t EventDriver::stand_where_reached(State& state, Companion& companion, StepReport& report,
+                                             RecordedEvents& events) {
+  if (!reached_.is_known) return 0;
+  balance_.return_to(reached_.balance, reached_.state.time);
+  trial_ = reached_.state;
+  modes_.swap(reached_.modes);
+  reached_.is_known = false;
+  const std::size_t count = commit(state, companion, account(state.time, trial_.time), report, events);
+  if (reached_.solved.problems > 0) count_solved(companion, reached_.solved);
+  return count;
+}
+
+/// Energies of the trial state, which groups have reached. No event is looked at any more.
+StoredEnergies EventDriver::account(double from, double target) {
+  trial_.time = target;
+  const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), memory_.instant.now.evaluation);
+  if (!std::isfinite(stored.total())) fail_energy(from, target);
+  overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, memory_.motion.lengths, from);
+  balance_.finish();
+  return stored;
+}
+
+/// Makes the trial state the state.
+std::size_t EventDriver::commit(State& state, Companion& companion, const StoredEnergies& stored,
+                                StepReport& report, RecordedEvents& events) {
+  const double target = trial_.time;
   write_report(state.time, target, report);
   companion.ledger.book(balance_.flows, stored);
   companion.modes.swap(modes_);
@@ -132,40 +168,26 @@ void EventDriver::demand_laws(double from, double to) {
   }
 }
 
-/// Moves all groups to a time and writes their state to the trial. Returns its energies.
-StoredEnergies EventDriver::reach(const State& state, const Companion& companion, double target) {
-  good_until_ = state.time;
-  if (!started_) start(state, companion);
-  advance_groups(target);
-  good_until_ = target;
-  trial_.time = target;
-  modes_.clear();
-  groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
-  // No event is looked at any more.
-  const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), memory_.instant.now.evaluation);
-  if (!std::isfinite(stored.total())) fail_energy(state.time, target);
-  overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, memory_.motion.lengths, state.time);
-  balance_.finish();
-  return stored;
-}
-
-/// Groups that may meet go on together, others each to the end.
-void EventDriver::advance_groups(double to) {
-  const auto advance_one = [&](ClockGroup& group) {
-    try {
-      group.advance(to, balance_);
-    } catch (...) {
-      good_until_ = group.now();
-      throw;
-    }
-  };
+/// Groups that may meet go on together, others each to the end of a stretch; one stretch, unless somebody
+/// waits.
+void EventDriver::advance_groups(double from, double to, bool keeps_reached) {
   balance_.clear();
+  reached_.is_known = false;
+  if (meetings_) meetings_->aim_at(to);
   try {
-    if (meetings_) {
-      meetings_->advance(to, balance_, good_until_);
-    } else {
-      groups_.for_each(advance_one);
+    if (keeps_reached) {
+      constexpr auto pause = std::chrono::milliseconds(50);
+      constexpr double first = 1.0 / 16.0;  // of the advance, at most
+      Stretches stretches(std::min(options_.interval, first * (to - from)));
+      reached_.taken = std::chrono::steady_clock::now();
+      for (double at = stretches.end(from, to); at < to; at = stretches.end(at, to)) {
+        move_groups(at, false);
+        if (std::chrono::steady_clock::now() - reached_.taken < pause) continue;
+        look_around(at);
+        stop_->tell(at);
+      }
     }
+    move_groups(to, true);
   } catch (const RunError& error) {
     // Steps go ahead of `to`, where laws may jump that were not looked at yet: that is the cause then.
     laws_.demand(to, to + options_.longest_step, options_.interval);
@@ -174,6 +196,42 @@ void EventDriver::advance_groups(double to) {
     failure.time = trial_.time;
     throw RunError("event-driven at t = " + to_text(trial_.time) + " s: " + error.what(), failure);
   }
+}
+
+/// \param is_end their output states are those then
+void EventDriver::move_groups(double to, bool is_end) {
+  if (meetings_) {
+    meetings_->advance(to, balance_, good_until_);
+    if (is_end) meetings_->output(to, balance_);
+    return;
+  }
+  groups_.for_each([&](ClockGroup& group) {
+    balance_.exchange(group.parts().books);
+    try {
+      group.advance(to, is_end, balance_);
+    } catch (...) {
+      good_until_ = group.now();
+      throw;
+    }
+    balance_.exchange(group.parts().books);
+    if (is_end) balance_.add(std::exchange(group.parts().books, {}));
+  });
+}
+
+/// Keeps what is reached, should the advance be interrupted before its end.
+void EventDriver::look_around(double time) {
+  reached_.is_known = false;
+  reached_.balance.copy_totals(balance_);
+  reached_.state = trial_;
+  reached_.state.time = time;
+  reached_.modes.clear();
+  reached_.solved = memory_.chain.statistics();
+  groups_.for_each([&](ClockGroup& group) {
+    if (!meetings_) reached_.balance.add(group.parts().books);
+    group.look_at(time, reached_.state, reached_.modes, reached_.balance);
+  });
+  reached_.taken = std::chrono::steady_clock::now();
+  reached_.is_known = true;
 }
 
 /// Writes the report of an advance, but for its contacts; findings stay, and memory.
@@ -232,6 +290,11 @@ std::vector<LastingContact> EventDriver::contact_forces(const State& state, cons
   return forces;
 }
 
+void EventDriver::count_solved(Companion& companion, const ChainStatistics& solved) {
+  companion.statistics.count_step(solved.worst_residual);
+  companion.contact_statistics += solved;
+}
+
 void EventDriver::count(Companion& companion) {
   Statistics& statistics = companion.statistics;
   ++statistics.steps;
@@ -254,8 +317,7 @@ void EventDriver::count(Companion& companion) {
   statistics.flow_restarts += now.restarts - counted_.restarts;
   counted_ = now;
   if (memory_.chain.statistics().problems > 0) {
-    statistics.count_step(memory_.chain.statistics().worst_residual);
-    companion.contact_statistics += memory_.chain.statistics();
+    count_solved(companion, memory_.chain.statistics());
     memory_.chain.reset_statistics();
   }
 }

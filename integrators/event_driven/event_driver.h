@@ -14,6 +14,7 @@
 #include <carom/integrators/event_driven/group_set.h>
 #include <carom/integrators/event_driven/law_continuity.h>
 #include <carom/integrators/event_driven/overlap_check.h>
+#include <carom/integrators/event_driven/reached_motion.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/event_driven.h>
 #include <carom/integrators/run/recorded_events.h>
@@ -41,8 +42,14 @@ public:
   /// deep in anything at the end (OverlapCheck).
   /// Returns how many records `events` got: those of impacts are still to be listed in the report
   /// (list_impacts()).
+  /// \param may_be_interrupted keep what is reached on the way, for stand_where_reached()
   std::size_t advance(State& state, Companion& companion, double target, StepReport& report,
-                      RecordedEvents& events);
+                      RecordedEvents& events, bool may_be_interrupted = false);
+  /// After an advance that was interrupted (StopRequest::interrupt_when()): state, companion, report and
+  /// events are those of the latest time at which it had looked around, if it got there. Returns as
+  /// advance().
+  std::size_t stand_where_reached(State& state, Companion& companion, StepReport& report,
+                                  RecordedEvents& events);
   /// Where the last advance() failed, the time up to which the motion was decided before, not before the
   /// state's [s]. Advances to earlier times succeed, but for what their own ends bring to light.
   [[nodiscard]] double good_until() const { return good_until_; }
@@ -63,9 +70,14 @@ private:
   template <class F>
   auto within_limit(double time, F&& evaluate) const;
   void count(Companion& companion);
+  static void count_solved(Companion& companion, const ChainStatistics& solved);
   void demand_laws(double from, double to);
-  [[nodiscard]] StoredEnergies reach(const State& state, const Companion& companion, double target);
-  void advance_groups(double to);
+  void advance_groups(double from, double to, bool keeps_reached);
+  void move_groups(double to, bool is_end);
+  void look_around(double time);
+  [[nodiscard]] StoredEnergies account(double from, double target);
+  std::size_t commit(State& state, Companion& companion, const StoredEnergies& stored, StepReport& report,
+                     RecordedEvents& events);
   void write_report(double from, double to, StepReport& out) const;
   [[noreturn]] void fail_energy(double from, double to);
 
@@ -81,6 +93,8 @@ private:
   ContactModes modes_;
   EventBalance balance_;
   FlowCounts counted_;  // of the flows, in the statistics so far
+  ReachedMotion reached_;
+  const StopRequest* stop_;  // null: nobody interrupts
   double good_until_ = 0.0;
   bool started_ = false;
 };

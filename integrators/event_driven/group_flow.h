@@ -24,6 +24,8 @@ public:
   void start(double time, std::span<const double> y, bool one_step);
   /// The flow, at the step where it was left.
   [[nodiscard]] Flow& borrow();
+  /// True if the flow is borrowed now.
+  [[nodiscard]] bool is_borrowed() const { return static_cast<bool>(loan_); }
   /// The flow, borrowed, to be advanced or corrected.
   [[nodiscard]] Flow& change();
   /// Keeps the length of the next step for the next start(). \param length [s], 0: none

@@ -55,15 +55,21 @@ void GroupMeetings::start(double time) {
   target_ = time;
 }
 
-void GroupMeetings::advance(double to, EventBalance& balance, double& reached) {
+void GroupMeetings::aim_at(double to) {
   from_ = target_;
   target_ = to;
+}
+
+void GroupMeetings::advance(double to, EventBalance& balance, double& reached) {
   Appointment at;
   while (queue_.take(to, at)) {
     reached = at.time;
     keep(at, balance);
   }
   reached = to;
+}
+
+void GroupMeetings::output(double to, EventBalance& balance) {
   groups_->for_each([&](ClockGroup& group) { JoinableGroup(group).output(to, balance); });
 }
 

@@ -34,9 +34,13 @@ public:
   void regroup(const State& state);
   /// Begins at a time at which all groups were started.
   void start(double time);
-  /// Advances all groups; events at `to` included. \param reached time up to which all is decided [s],
+  /// Begins an advance of all groups to a time [s].
+  void aim_at(double to);
+  /// Goes on to a time, events at that very time included. \param reached time up to which all is decided [s],
   /// written as it goes on: where this throws, it says how far it came
   void advance(double to, EventBalance& balance, double& reached);
+  /// The output states at the time last advanced to.
+  void output(double to, EventBalance& balance);
 
 private:
   void keep(const Appointment& at, EventBalance& balance);

@@ -46,6 +46,8 @@ public:
   void order(OrderMemory& memory);
   /// Lets go of the first records.
   void drop_first(std::size_t count);
+  /// Lets go of the last records.
+  void drop_last(std::size_t count) { places_.resize(places_.size() - count); }
   /// Lets go of all. Memory stays.
   void clear();
 

@@ -22,6 +22,9 @@ public:
 /// what other threads write (std::stop_token, std::atomic), and what it throws comes out unchanged.
 using StopFunction = std::function<bool()>;
 
+/// Gets a time that a run has reached [s]. What it throws ends the run and comes out unchanged.
+using ReachedFunction = std::function<void(double)>;
+
 /// Asks a StopFunction between the parts of long work.
 class CAROM_API StopRequest {
 public:
@@ -30,17 +33,37 @@ public:
   /// \param function empty: never ends
   explicit StopRequest(StopFunction function) : function_(std::move(function)) {}
 
-  /// True if there is a function to ask.
+  /// Asks this function from now on (Simulation::stop_when()).
+  void stop_when(StopFunction function) { function_ = std::move(function); }
+  /// Asks this function too, for somebody who waits (Simulation::interrupt_when()).
+  void interrupt_when(StopFunction function, ReachedFunction reached) {
+    interrupt_ = std::move(function);
+    reached_ = std::move(reached);
+  }
+
+  /// True if stop_when() has a function to ask.
   [[nodiscard]] bool asks() const { return static_cast<bool>(function_); }
+  /// True if somebody waits, who may interrupt work at any moment.
+  [[nodiscard]] bool may_interrupt() const { return static_cast<bool>(interrupt_); }
   /// Throws Cancelled if work shall end.
   void check() const {
     if (function_ && function_()) stop();
+    if (interrupt_) check_interrupt();
   }
+  /// True if the last work ended because of the function of interrupt_when().
+  [[nodiscard]] bool interrupted() const { return interrupted_; }
+  /// New work begins.
+  void begin() const { interrupted_ = false; }
+  /// Tells who waits which time the work has reached [s].
+  void tell(double time) const;
 
 private:
   [[noreturn]] static void stop();
+  void check_interrupt() const;
 
-  StopFunction function_;
+  StopFunction function_, interrupt_;
+  ReachedFunction reached_;
+  mutable bool interrupted_ = false;
 };
 
 }  // namespace carom
