@@ -1,3 +1,4 @@
+#include <carom/core/nearest_name.h>
 #include <carom/core/stored_parts.h>
 
 #include <algorithm>
@@ -101,11 +102,12 @@ std::string System::given_name(BodyId id) const {
 }
 
 Index System::by_name(Role role, std::string_view name, std::string_view what) const {
+  std::vector<std::string_view> known;
   if (const auto names = stored().serials_by_name.find(role); names != stored().serials_by_name.end()) {
     if (const auto found = names->second.find(name); found != names->second.end()) return found->second;
+    for (const auto& [text, serial] : names->second) known.push_back(text);
   }
-  throw ModelError(std::string(what) + " '" + std::string(name) +
-                   "': there is none; allowed: the name of a " + std::string(what) + " of this system");
+  refuse_name(what, name, known);
 }
 
 BodyId System::body(std::string_view name) const { return {by_name(Role::body, name, "body"), token_}; }
