@@ -65,8 +65,9 @@ class Recording:
     model        every part with its fields (carom.model_data)
     units        SI units by array
 
-    The impulse of a contact is that of the step that ended at the sample; in the event-driven mode that of
-    impacts within it.
+    The impulse of a contact is that of the step that ended at the sample. In the event-driven mode impacts
+    within the step have theirs (`impact` is 1), and contacts that last at the sample have their force then times
+    the length of the step, and their mode: stick or slip.
     """
 
     def __init__(

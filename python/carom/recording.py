@@ -68,13 +68,15 @@ class Recorder:
     interval     between samples, 0: every step [s]. In the event-driven mode steps end at multiples of its
                  own interval.
     contacts     False: contacts of samples are left out, which are most of a file of many bodies
+    overwrite    replaces a file of that name, which is refused otherwise
     resume       continues the file of an earlier run of the same model, from the time at which the simulation
                  is (load its checkpoint first); later samples in the file are dropped
     flush_every  a killed program loses what is younger than this, of the clock on the wall [s]
 
     A context manager: leaving it closes. Raises ModelError for an interval that is no number >= 0, or a
-    resumed file of another model; FileError for a file that cannot be read or written; ImportError without
-    h5py. A recorder that finds the model edited ends the run with ModelError.
+    resumed file of another model; FileError for a file that exists, or cannot be read or written; ImportError
+    without h5py. A recorder that finds the model edited ends the run with ModelError, one that cannot write
+    with FileError: the file has what was written before.
     """
 
     def __init__(
@@ -84,11 +86,14 @@ class Recorder:
         interval: float = 0.01,
         *,
         contacts: bool = True,
+        overwrite: bool = False,
         resume: bool = False,
         flush_every: float = 1.0,
     ) -> None:
         self._simulation = simulation
         self._closed = True  # until all is open
+        if overwrite and resume:
+            raise _core.ModelError("Recorder: overwrite and resume are both True; allowed: one of them")
         self.path = None if path is None else Path(path)
         self._model = describe(simulation.system())
         self._dimension = 3 if self._model["dimension"] == 3 else 2
@@ -115,7 +120,7 @@ class Recorder:
             simulation, interval, contacts, frames, seconds, full, names, last, instant
         )
         try:
-            self._store = resumed or self._new_store(interval)
+            self._store = resumed or self._new_store(interval, overwrite)
             self._closed = False
             if math.isnan(last):
                 self._sampler.sample(simulation)
@@ -133,12 +138,13 @@ class Recorder:
 
         return FileStore.resume(self.path, self._model, self._types, simulation.time())
 
-    def _new_store(self, interval: float) -> Any:
+    def _new_store(self, interval: float, overwrite: bool) -> Any:
         if self.path is None:
             return MemoryStore(self._types)
         from .recording_file import FileStore
 
-        return FileStore.create(self.path, self._model, self._types, self._sampler.moved(), interval)
+        moved = self._sampler.moved()
+        return FileStore.create(self.path, self._model, self._types, moved, interval, overwrite)
 
     def __enter__(self) -> Recorder:
         return self

@@ -6,7 +6,11 @@
     /states/contact_ends, event_ends                        rows of the tables up to and with each sample
     /ledger/rows, /contacts/rows, /events/rows              tables
     /names                       what `name` in the tables counts
+    /bodies                      names of the bodies, in the order of positions
     /complete                    number of samples up to which all of this is written
+
+Codes in the tables (`mode`, `kind`, `impact`) have their meaning as attributes of the tables: "legend of mode"
+is a list of names, the first that of code 0. Units are attributes likewise.
 
 The file is in the mode of HDF5 for one writer and several readers: its own structure is whole after every
 flush. Rows are written first, the count of complete samples last, so a reader that believes the count finds
@@ -35,6 +39,12 @@ FORMAT = "carom recording"
 VERSION = 1
 _STATES = ("positions", "velocities", "ground", "contact_ends", "event_ends", "times")
 _TABLES = ("contacts", "events")
+_LEGENDS = {
+    "mode": [mode.name for mode in _core.ContactMode],
+    "kind": [kind.name for kind in _core.EventKind],
+    "impact": ["lasts, or closed slower than the capture speed", "struck"],
+}
+_FAULTS = (OSError, RuntimeError, ValueError)  # that h5py raises where a file cannot be written
 _CHUNK_BYTES = 1 << 16
 _SAME_TIME = 1e-6  # part of the interval by which samples and its multiples may differ, as in the sampler
 _ROUNDING = 1e-13  # of sums of steps
@@ -57,29 +67,113 @@ def _name_length(model: dict[str, Any]) -> int:
     return 96 + 3 * max((len(name.encode()) for name in given), default=0)
 
 
+def _abandon(file: Any, sets: dict[str, Any]) -> None:
+    """Closes a file that could not be written, and its data sets. HDF5 would write what is left when it closes
+    them, and once more when the program ends, which then crashes: it writes to nowhere instead, and the file
+    stays as it is. Whoever writes keeps all data sets open until here, for the same reason.
+    """
+    try:
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        try:
+            os.dup2(nowhere, file.id.get_vfd_handle(), inheritable=False)
+        finally:
+            os.close(nowhere)
+        sets.clear()
+        file.close()
+    except _FAULTS:
+        pass  # the fault that is to be told is the first
+
+
+def _write_legends(file: Any, sets: dict[str, Any], model: dict[str, Any]) -> None:
+    """Names of bodies, and what codes in the tables mean; files of earlier versions have none."""
+    text = h5py.string_dtype()
+    for table in _TABLES:
+        rows = sets[f"{table}/rows"]
+        for field in rows.dtype.names:
+            if field in _LEGENDS:
+                rows.attrs.create(f"legend of {field}", _LEGENDS[field], dtype=text)
+    if "bodies" not in file:
+        names = [body["name"] for body in model["bodies"]]
+        sets["bodies"] = file.create_dataset("bodies", data=names, shape=(len(names),), dtype=text)
+
+
 class FileStore:
     """Writes blocks of samples to a file."""
 
-    def __init__(self, file: Any, path: Path, names: list[str], last: float, counts: dict[str, int]) -> None:
-        events = file["events/rows"]
+    def __init__(
+        self,
+        file: Any,
+        sets: dict[str, Any],
+        path: Path,
+        names: list[str],
+        last: float,
+        counts: dict[str, int],
+    ) -> None:
+        events = sets["events/rows"]
         self.instant = int(events[-1]["instant"]) + 1 if len(events) else 0
         self._file = file
+        self._sets = sets
         self._path = path
-        self._frames = len(file["states/times"])
+        self._frames = len(sets["states/times"])
         self.names = names
         self.last = last
         self.counts = counts
+        self._failed = False
         file.swmr_mode = True
 
     @classmethod
     def create(
-        cls, path: Path, model: dict[str, Any], types: dict[str, Any], moved: list[int], interval: float
+        cls,
+        path: Path,
+        model: dict[str, Any],
+        types: dict[str, Any],
+        moved: list[int],
+        interval: float,
+        overwrite: bool = False,
     ) -> FileStore:
-        """A new file; one of that name is replaced. Raises FileError."""
+        """A new file, which replaces one of that name if `overwrite`. Raises FileError."""
+        existed = os.path.lexists(path)
+        if existed and not overwrite:
+            raise _core.FileError(
+                f"recording '{path}' exists; allowed: overwrite=True, which replaces it, "
+                "resume=True, which continues it, or another path"
+            )
+        # Made in memory and written as a whole: HDF5 does not survive a disk that is full at the start.
+        with h5py.File(path.name, "w", driver="core", backing_store=False, libver="latest") as made:
+            cls._lay_out(made, model, types, moved, interval)
+            made.flush()
+            image = made.id.get_file_image()
         try:
-            file = h5py.File(path, "w", libver="latest")
+            with open(path, "wb" if overwrite else "xb") as plain:
+                plain.write(image)
         except OSError as error:
+            if not existed:
+                path.unlink(missing_ok=True)
             raise _core.FileError(f"recording '{path}' cannot be written: {error}") from error
+        file = _reopen(path)
+        sets: dict[str, Any] = {}
+        try:
+            sets.update({name: file[name] for name in cls._names(file)})
+            return cls(file, sets, path, [], numpy.nan, {"contact_ends": 0, "event_ends": 0})
+        except _FAULTS as error:
+            _abandon(file, sets)
+            raise _core.FileError(f"recording '{path}' cannot be written: {error}") from error
+
+    @staticmethod
+    def _names(file: Any) -> list[str]:
+        """Names of all data sets that rows are written to."""
+        states = [f"states/{name}" for name in file["states"]]
+        return [*states, "ledger/rows", *(f"{table}/rows" for table in _TABLES), "names", "complete"]
+
+    @staticmethod
+    def _lay_out(
+        file: Any,
+        model: dict[str, Any],
+        types: dict[str, Any],
+        moved: list[int],
+        interval: float,
+    ) -> None:
+        """Makes empty data sets."""
         file.attrs.update(
             format=FORMAT,
             version=VERSION,
@@ -109,7 +203,7 @@ class FileStore:
                     rows.attrs[f"unit of {field}"] = units[field]
         _rows(file, "names", (), f"S{_name_length(model)}")
         file.create_dataset("complete", data=0, dtype="i8")
-        return cls(file, path, [], numpy.nan, {"contact_ends": 0, "event_ends": 0})
+        _write_legends(file, {name: file[name] for name in FileStore._names(file)}, model)
 
     @classmethod
     def resume(cls, path: Path, model: dict[str, Any], types: dict[str, Any], time: float) -> FileStore:
@@ -135,15 +229,25 @@ class FileStore:
         lengths = {f"states/{name}": kept for name in _STATES}
         lengths.update({"ledger/rows": kept, "contacts/rows": counts["contact_ends"]})
         lengths.update({"events/rows": counts["event_ends"], "names": len(names)})
-        file["complete"][()] = kept
-        if "orientations" in file["states"]:
-            lengths["states/orientations"] = min(kept, len(file["states/orientations"]))
-        for name, length in lengths.items():
-            file[name].resize(length, axis=0)
-        return cls(file, path, names, last, counts)
+        sets = {name: file[name] for name in cls._names(file)}
+        try:
+            sets["complete"][()] = kept
+            if "states/orientations" in sets:
+                lengths["states/orientations"] = min(kept, len(sets["states/orientations"]))
+            for name, length in lengths.items():
+                sets[name].resize(length, axis=0)
+            _write_legends(file, sets, model)
+            return cls(file, sets, path, names, last, counts)
+        except _FAULTS as error:
+            _abandon(file, sets)
+            raise _core.FileError(f"recording '{path}' cannot be continued: {error}") from error
 
     def append(self, block: dict[str, Any]) -> None:
-        """Writes the rows of a block, then the count. Raises FileError."""
+        """Writes the rows of a block, then the count. Raises FileError; then the file is closed, and has what it
+        had before.
+        """
+        if self._failed:
+            raise _core.FileError(f"recording '{self._path}' could not be written before, and is closed")
         try:
             self._append("names", numpy.array([self._encoded(name) for name in block["names"]]))
             for table in (*_TABLES, "ledger"):
@@ -152,14 +256,16 @@ class FileStore:
                 self._append(f"states/{name}", block[name])
             self._file.flush()
             self._frames += block["frames"]
-            self._file["complete"][()] = self._frames
-            self._file["complete"].flush()
-        except OSError as error:
+            self._sets["complete"][()] = self._frames
+            self._sets["complete"].flush()
+        except _FAULTS as error:
+            self._failed = True
+            _abandon(self._file, self._sets)
             raise _core.FileError(f"recording '{self._path}' cannot be written: {error}") from error
 
     def _encoded(self, name: str) -> bytes:
         data = name.encode()
-        longest = self._file["names"].dtype.itemsize
+        longest = self._sets["names"].dtype.itemsize
         if len(data) > longest:
             raise _core.FileError(
                 f"recording '{self._path}': the name {name!r} is longer than {longest} bytes"
@@ -169,16 +275,22 @@ class FileStore:
     def _append(self, name: str, rows: Any) -> None:
         if len(rows) == 0:
             return
-        target = self._file[name]
+        target = self._sets[name]
         start = len(target)
         target.resize(start + len(rows), axis=0)
         target[start:] = rows
 
     def close(self) -> None:
         """Ends the file. Raises FileError."""
+        if self._failed:
+            return
         try:
+            self._file.flush()
+            self._sets.clear()
             self._file.close()
-        except (OSError, RuntimeError) as error:
+        except _FAULTS as error:
+            self._failed = True
+            _abandon(self._file, self._sets)
             raise _core.FileError(f"recording '{self._path}' cannot be written: {error}") from error
 
 
@@ -233,14 +345,27 @@ def _reopen(path: Path) -> Any:
         pass
     copy = path.with_name(path.name + ".copy")
     try:
-        with _open(path) as source, h5py.File(copy, "w", libver="latest") as target:
-            target.attrs.update(source.attrs)
-            for name in source:
-                source.copy(name, target)
+        with _open(path) as source:
+            _copy(source, copy)
         os.replace(copy, path)
         return h5py.File(path, "r+", libver="latest")
-    except OSError as error:
+    except _FAULTS as error:
         raise _core.FileError(f"recording '{path}' cannot be continued: {error}") from error
+
+
+def _copy(source: Any, path: Path) -> None:
+    """Copies an open file. Raises what h5py raises; there is no copy then."""
+    target = h5py.File(path, "w", libver="latest")
+    try:
+        target.attrs.update(source.attrs)
+        for name in source:
+            source.copy(name, target)
+        target.flush()
+    except _FAULTS:
+        _abandon(target, {})
+        path.unlink()
+        raise
+    target.close()
 
 
 def _complete(file: Any) -> int:

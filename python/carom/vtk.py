@@ -227,7 +227,7 @@ def _in_space(vectors: Array) -> Array:
 
 
 def write_vtk(recording: Recording, path: Union[str, os.PathLike[str]], every: int = 1) -> None:
-    """Writes a recording for ParaView: path, a file .pvd, and a folder of that name beside it.
+    """Writes a recording for ParaView: path, a file .pvd, and a folder of that name beside it. Makes the folders.
 
     every: only each so many samples are taken, and the last. Raises ModelError for a path that does not end
     in .pvd; FileError for one that cannot be written.
@@ -242,7 +242,7 @@ def write_vtk(recording: Recording, path: Union[str, os.PathLike[str]], every: i
     folder, series = target.with_suffix(""), _Series(recording)
     files = []
     try:
-        folder.mkdir(exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
         for sample in sorted({*range(0, len(recording), every), len(recording) - 1}):
             time = float(recording.times[sample])
             files += [(time, part, f"{folder.name}/{file}") for part, file in series.write(sample, folder)]

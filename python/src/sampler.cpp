@@ -3,6 +3,7 @@
 #include <carom/core/errors.h>
 #include <carom/core/layout.h>
 #include <carom/core/registry.h>
+#include <carom/integrators/contact_forces.h>
 
 #include <nanobind/ndarray.h>
 
@@ -198,6 +199,21 @@ void Sampler::read_contacts(const Simulation& simulation) {
     copy(contact.point, row.point), copy(contact.normal, row.normal), copy(contact.impulse, row.impulse);
     row.gap = contact.gap, row.name = names_.place(simulation, contact.key);
     row.mode = static_cast<std::uint8_t>(contact.mode), row.impact = contact.impact ? 1 : 0;
+    append(block_.contacts, row);
+  }
+  const double step = simulation.report().step;
+  // The report of an event-driven step has impacts only. Before the first step nothing is known to last.
+  if (std::holds_alternative<EventDriven>(simulation.mode()) && step > 0.0) read_lasting<D>(simulation, step);
+}
+
+template <int D>
+void Sampler::read_lasting(const Simulation& simulation, double step) {
+  for (const LastingContact& contact : simulation.contact_forces()) {
+    ContactRow<D> row;
+    copy(contact.point, row.point), copy(contact.normal, row.normal), copy(contact.force, row.impulse);
+    for (double& impulse : row.impulse) impulse *= step;
+    row.gap = contact.gap, row.name = names_.place(simulation, contact.key);
+    row.mode = static_cast<std::uint8_t>(contact.mode);
     append(block_.contacts, row);
   }
 }

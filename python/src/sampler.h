@@ -24,13 +24,15 @@ namespace carom_python {
 /// One contact of a sample. D: dimension of the model.
 template <int D>
 struct ContactRow {
-  std::array<double, D> point{};    ///< where it touches [m]
-  std::array<double, D> normal{};   ///< towards its body
-  std::array<double, D> impulse{};  ///< normal first, of the step that ended at the sample [N s]
-  double gap = 0.0;                 ///< [m]
-  std::int32_t name = 0;            ///< place in the list of names
-  std::uint8_t mode = 0;            ///< ContactMode
-  std::uint8_t impact = 0;          ///< 1: closed faster than the capture speed
+  std::array<double, D> point{};   ///< where it touches [m]
+  std::array<double, D> normal{};  ///< towards its body
+  /// Normal first, of the step that ended at the sample; of a contact that lasts in the event-driven mode its
+  /// force there times the length of the step [N s].
+  std::array<double, D> impulse{};
+  double gap = 0.0;         ///< [m]
+  std::int32_t name = 0;    ///< place in the list of names
+  std::uint8_t mode = 0;    ///< ContactMode
+  std::uint8_t impact = 0;  ///< 1: closed faster than the capture speed
   std::uint16_t unused = 0;
 };
 
@@ -128,6 +130,8 @@ private:
   void read_events(const carom::Simulation& simulation);
   template <int D>
   void read_contacts(const carom::Simulation& simulation);
+  template <int D>
+  void read_lasting(const carom::Simulation& simulation, double step);
   void read_states(const carom::Simulation& simulation);
   void check(const carom::Simulation& simulation) const;
   void begin_block();

@@ -2,6 +2,7 @@
 
 import csv
 import importlib.util
+import math
 
 import numpy
 import pytest
@@ -45,7 +46,9 @@ def test_rows_are_those_of_the_simulation(mode):
         for k in range(1, 11):
             simulation.run_until(0.02 * k)
             terms = simulation.energy().terms()
-            count = sum(1 for contact in simulation.report().contacts)
+            count = len(simulation.report().contacts)
+            if isinstance(mode, EventDriven):
+                count += len(simulation.contact_forces())
             seen.append(
                 (
                     simulation.time(),
@@ -84,6 +87,47 @@ def test_a_recorder_changes_no_bit_of_the_run(mode):
         if recorder is not None:
             recorder.close()
     assert ends[0] == ends[1]
+
+
+def block_on_incline(angle: float, friction: float) -> carom.System:
+    """A block of 1 kg at rest on an incline."""
+    system = carom.System()
+    system.add(carom.planar.Gravity((0.0, -9.81)))
+    system.set_default_law(carom.Surface(friction=friction, normal_restitution=0.0))
+    normal = (-math.sin(angle), math.cos(angle))
+    system.add(carom.planar.HalfPlane(normal=normal), name="incline")
+    place = (0.1 * normal[0], 0.1 * normal[1])
+    mass = carom.planar.box(1.0, 0.4, 0.2)
+    block = system.add(carom.planar.RigidBody(mass=mass, position=place, angle=angle), "block")
+    corners = [(-0.2, -0.1), (0.2, -0.1), (0.2, 0.1), (-0.2, 0.1)]
+    system.add(carom.planar.Polygon(body=block, vertices=corners))
+    return system
+
+
+@pytest.mark.parametrize("mode", [TimeStepping(step=1e-2), EventDriven()], ids=["stepping", "events"])
+@pytest.mark.parametrize("angle, friction", [(0.2, 0.5), (0.2, 0.1), (0.0, 0.3), (-0.3, 0.2), (0.5, 0.6)])
+def test_contacts_that_last_are_recorded(mode, angle, friction):
+    """Stick or slip, and forces that carry the weight, in both modes."""
+    simulation = Simulation(block_on_incline(angle, friction), mode)
+    with Recorder(simulation, interval=0.05) as recorder:
+        simulation.run_until(0.5)
+    recording = recorder.recording()
+    sticks = math.tan(abs(angle)) < friction
+    codes = {carom.ContactMode.stick.value} if sticks else {
+        carom.ContactMode.slip_positive.value,
+        carom.ContactMode.slip_negative.value,
+    }
+    weight = 9.81 * math.cos(angle) * simulation.report().step
+    along = min(9.81 * math.sin(abs(angle)), friction * 9.81 * math.cos(angle)) * simulation.report().step
+    for sample in range(2, len(recording)):
+        rows = recording.contacts_at(sample)
+        assert 1 <= len(rows) <= 2
+        assert set(rows["mode"]) <= codes and not rows["impact"].any()
+        assert rows["impulse"][:, 0].sum() == pytest.approx(weight, rel=1e-6)
+        assert abs(rows["impulse"][:, 1].sum()) == pytest.approx(along, rel=1e-6, abs=1e-12)
+        assert numpy.abs(rows["gap"]).max() < 1e-6
+        names = {recording.names[name] for name in rows["name"]}
+        assert all("'block'" in name and "'incline'" in name for name in names)
 
 
 def test_events_are_those_of_the_event_driven_mode():

@@ -1,6 +1,7 @@
 """Files of recordings: killed programs, resumed files, files that are cut off."""
 
 import os
+import random
 import signal
 import subprocess
 import sys
@@ -11,7 +12,8 @@ from pathlib import Path
 import numpy
 import pytest
 
-from carom import FileError, ModelError, Recorder, Simulation, TimeStepping, load_recording
+import carom
+from carom import EventDriven, FileError, ModelError, Recorder, Simulation, TimeStepping, load_recording
 
 from models import falling_ball, pile
 
@@ -181,3 +183,150 @@ def test_what_is_no_recording_is_refused_by_its_path(tmp_path):
         load_recording(other)
     with pytest.raises(FileError, match="none/run.h5' cannot be written"):
         Recorder(Simulation(falling_ball(), TimeStepping()), tmp_path / "none" / "run.h5")
+
+
+def test_a_file_that_exists_is_refused(tmp_path):
+    path = tmp_path / "run.h5"
+    simulation = Simulation(falling_ball(), TimeStepping(step=1e-2))
+    with Recorder(simulation, path):
+        simulation.run_until(0.1)
+    before = path.read_bytes()
+    said = "run.h5' exists; allowed: overwrite=True, which replaces it, resume=True, which continues it"
+    with pytest.raises(FileError, match=said):
+        Recorder(simulation, path)
+    assert path.read_bytes() == before
+    simulation.run_until(0.2)  # nothing observes it
+    with pytest.raises(ModelError, match="overwrite and resume are both True"):
+        Recorder(simulation, path, overwrite=True, resume=True)
+    with Recorder(simulation, path, overwrite=True):
+        simulation.run_until(0.3)
+    assert load_recording(path).times[0] == pytest.approx(0.2)
+    other = tmp_path / "notes.txt"
+    other.write_text("no recording")
+    with pytest.raises(FileError, match="exists"):
+        Recorder(simulation, other)
+    assert other.read_text() == "no recording"
+    with pytest.raises(FileError, match="cannot be written"):
+        Recorder(simulation, tmp_path / "none" / "run.h5")
+
+
+FULL = """
+    import resource, sys
+    sys.path.insert(0, sys.argv[2])
+    import carom
+    from carom import Recorder, Simulation, TimeStepping
+    from models import pile
+    simulation = Simulation(pile(6, 6), TimeStepping(step=1e-3))
+    room = int(sys.argv[3])
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
+    try:
+        recorder = Recorder(simulation, sys.argv[1], interval=0.0, flush_every=0.01)
+        with recorder:
+            simulation.run_until(1e4)
+    except carom.FileError as error:
+        print("refused:", str(error).partition(" (")[0], flush=True)
+    if sys.argv[4] == "again":
+        recorder.close()
+        try:
+            recorder.flush()
+            simulation.run_until(simulation.time() + 0.1)
+        except carom.FileError as error:
+            print("refused again:", error)
+"""
+
+
+def record_until_full(path: Path, room: int, how: str = "once") -> str:
+    """Records in a program until its file has no more room; what it says. It ends well."""
+    here = str(Path(__file__).parent)
+    words = [sys.executable, "-c", textwrap.dedent(FULL), str(path), here, str(room), how]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    assert ended.returncode == 0, (room, ended.returncode, ended.stderr)
+    assert ended.stdout.startswith(f"refused: recording '{path}' cannot be written"), ended.stdout
+    return ended.stdout
+
+
+def test_a_full_disk_ends_the_run_and_not_the_program(tmp_path):
+    """However much room there is: none for the start of the file, or for some samples."""
+    rng = random.Random(17)
+    samples = []
+    for room in [0, 100, 20_000, 1_600_000, *(rng.randrange(1_000, 4_000_000) for _ in range(6))]:
+        path = tmp_path / f"full{room}.h5"
+        record_until_full(path, room)
+        if room < 1_500_000:  # for the first rows of all data sets
+            continue
+        recording = load_recording(path)
+        samples.append(len(recording))
+        assert len(recording) > 1
+        assert (numpy.diff(recording.times) > 0.0).all() and numpy.isfinite(recording.positions).all()
+        assert recording.contact_ends[-1] == len(recording.contacts)
+    assert max(samples) > 100
+
+
+def test_a_recorder_whose_disk_was_full_stays_closed(tmp_path):
+    assert "refused again" not in record_until_full(tmp_path / "full.h5", 3_000_000, "again")
+
+
+def test_codes_have_legends_and_bodies_names(tmp_path):
+    import h5py
+
+    path = tmp_path / "run.h5"
+    simulation = Simulation(falling_ball(), EventDriven())
+    with Recorder(simulation, path, interval=0.05) as recorder:
+        simulation.run_until(2.0)
+    recording = recorder.recording()
+    with h5py.File(path, "r") as file:
+        assert [name.decode() for name in file["bodies"]] == recording.body_names() == ["particle 'ball'"]
+        for table in ("contacts", "events"):
+            rows = file[f"{table}/rows"]
+            modes = list(rows.attrs["legend of mode"])
+            assert modes == [mode.name for mode in carom.ContactMode]
+            assert {modes[code] for code in rows["mode"]} >= {"slip_positive"} or "stick" in modes
+        kinds = list(file["events/rows"].attrs["legend of kind"])
+        assert [kinds[code] for code in file["events/rows"]["kind"]] == [e.kind.name for e in simulation.events()]
+        assert len(file["contacts/rows"].attrs["legend of impact"]) == 2
+        with_codes = {field for field in ("mode", "kind", "impact", "name")}
+        for table in ("contacts", "events"):  # every column of whole numbers has its meaning
+            rows = file[f"{table}/rows"]
+            coded = [field for field in rows.dtype.names if rows.dtype[field].kind in "ui" and field != "instant"]
+            assert set(coded) <= with_codes
+            assert all(f"legend of {field}" in rows.attrs for field in coded if field != "name")
+
+
+def test_a_killed_file_is_read_as_the_page_says(tmp_path):
+    import h5py
+
+    path = tmp_path / "killed.h5"
+    kill_a_recording(path, 0.2)
+    with pytest.raises(OSError):
+        h5py.File(path, "r")
+    with h5py.File(path, "r", libver="latest", swmr=True) as file:
+        complete = int(file["complete"][()])
+        assert complete == len(load_recording(path)) > 2
+        assert file["states/positions"][:complete].shape[1:] == (36, 3)
+        assert len(file["bodies"]) == 36
+
+
+def test_series_for_paraview_make_their_folders(tmp_path):
+    simulation = Simulation(falling_ball(), TimeStepping(step=1e-2))
+    with Recorder(simulation) as recorder:
+        simulation.run_until(0.1)
+    recorder.recording().to_vtk(tmp_path / "a" / "b" / "run.pvd")
+    assert (tmp_path / "a" / "b" / "run.pvd").exists()
+    assert any((tmp_path / "a" / "b" / "run").iterdir())
+
+
+def test_programs_of_the_page(tmp_path, monkeypatch):
+    """Those of docs/viewer.md, in one session."""
+    import pages
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(carom, "write_view", lambda recording, path: None)  # which needs the built page
+    names: dict = {}
+    printed, compared = "", 0
+    for language, text in pages.blocks("viewer.md"):
+        if language == "python":
+            printed = pages.run(text, names)
+        elif language == "text":
+            assert pages.same(text, printed), printed
+            compared += 1
+    assert compared >= 1

@@ -215,6 +215,7 @@ def test_what_cannot_be_written_is_refused(all_parts, tmp_path):
         recording.to_vtk("run.vtu")
     with pytest.raises(ModelError, match="every is 0; allowed: at least 1"):
         recording.to_vtk(tmp_path / "run.pvd", every=0)
+    (tmp_path / "none").write_text("no folder")
     with pytest.raises(FileError, match="none/run.pvd' cannot be written"):
         recording.to_vtk(tmp_path / "none" / "run.pvd")
 
