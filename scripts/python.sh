@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Builds the Python package over build/release, installs it in build/python-test, checks its types and those of its
+# Builds the Python package over the installed library, installs it in build/python-test, checks its types and those of its
 # examples and runs its tests; the last line is "N passed, M failed".
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 source scripts/compiler_cache.sh
 
-scripts/python_environment.sh pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel
+scripts/python_environment.sh pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel tqdm
 venv="$PWD/build/python-test"
 # Reads what carom.vtk writes; there is not one for every Python.
 flock build/python.lock "$venv/bin/pip" -q install vtk || echo "python.sh: without VTK its test is left out" >&2

@@ -10,6 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 source scripts/compiler_cache.sh
 scripts/setup.sh --python
+scripts/viewer.sh --build # wheels contain its page
 
 pythons=("$@")
 if ((${#pythons[@]} == 0)); then
@@ -60,6 +61,10 @@ build() {
     exit 1
   }
   for wheel in "$folder"/repaired/*.whl; do
+    if [[ $(python3 -m zipfile --list "$wheel") != *carom/viewer.html* ]]; then
+      echo "wheel: $wheel has no page (carom/viewer.html)" >&2
+      exit 1
+    fi
     "$tools/auditwheel" show "$wheel" | sed -n '/consistent with/,/"/p'
     mv "$wheel" build/wheels/
   done
