@@ -4,6 +4,9 @@ Names, defaults and units are those of the C++ library; functions stay functions
 attributes. `from` is a word of Python: that argument is `from_`.
 """
 
+import sys as _sys
+import typing as _typing
+
 from . import planar, spatial, tables
 from ._core import *  # type: ignore[no-redef]  # noqa: F403  # it has modules planar, spatial, too
 from .recording import Recorder as Recorder
@@ -14,6 +17,14 @@ from .scene import SceneError as SceneError
 from .scene import load_scene as load_scene
 from .scene import save_scene as save_scene
 from .viewer import write_view as write_view
+from ._missing import missing as _missing
+from ._signatures import install as _install
+from ._version import __version__ as __version__
 
-__version__ = "0.1.0"
+_install()
+globals().update(planar=_sys.modules["carom.planar"], spatial=_sys.modules["carom.spatial"])  # not those of _core
 __all__ = [name for name in dir() if not name.startswith("_")]
+if not _typing.TYPE_CHECKING:  # a checker would believe that there is everything
+
+    def __getattr__(name: str) -> object:
+        raise _missing(__name__, name)

@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 from . import _core
+from ._version import __version__
 from .scene import Scene, load_robot, load_scene, save_scene, schema
 from .scene.build import MODES
 from .scene.findings import examine
@@ -122,6 +123,10 @@ def run(options: argparse.Namespace) -> int:
     recorded = options.record or options.view or options.vtk
     if options.interval is not None and not recorded:
         raise WrongUse("--interval is of a recording; give --record, --view or --vtk")
+    if options.overwrite and not options.record:
+        raise WrongUse("--overwrite is of a recording; give --record")
+    if options.record and options.record.exists() and not options.overwrite:
+        raise WrongUse(f"--record: {options.record} exists; --overwrite replaces it")
     if options.vtk and options.vtk.suffix != ".pvd":
         raise WrongUse(f"--vtk is {options.vtk}; allowed: a name that ends in .pvd")
     scene = load_scene(options.scene)
@@ -132,14 +137,13 @@ def run(options: argparse.Namespace) -> int:
         raise WrongUse(f"{options.scene} does not say until when to run; give --until")
     simulation = _simulation(scene, options)
     simulation.show_progress(True)  # on a terminal only
-    if isinstance(simulation.mode(), _core.EventDriven):
-        simulation.stop_when(lambda: False)  # Ctrl-C is seen where this is asked
     recorder: Any = None
     interrupted = False
     with contextlib.ExitStack() as stack:
         if recorded:
-            interval = {} if options.interval is None else {"interval": options.interval}
-            recorder = _part("recording").Recorder(simulation, options.record, **interval)
+            given: dict[str, Any] = {} if options.interval is None else {"interval": options.interval}
+            given["overwrite"] = options.overwrite
+            recorder = _part("recording").Recorder(simulation, options.record, **given)
             stack.enter_context(recorder)
         try:
             simulation.run_until(until)
@@ -191,8 +195,11 @@ def view(options: argparse.Namespace) -> int:
 
 def convert(options: argparse.Namespace) -> int:
     """carom import: a scene file from a robot description (URDF, MJCF) that moves in a plane."""
-    save_scene(load_robot(options.robot, options.plane), options.scene)
+    scene = load_robot(options.robot, options.plane)
+    save_scene(scene, options.scene)
     print(f"scene: {options.scene}")
+    for note in scene.left_out:
+        print(f"left out: {note}")
     return 0
 
 
@@ -208,6 +215,7 @@ def arguments() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         "carom", description="Runs, checks and shows scenes of rigid bodies in contact.", **texts
     )
+    parser.add_argument("--version", action="version", version=f"carom {__version__}")
     commands = parser.add_subparsers(required=True, metavar="command")
 
     command = commands.add_parser("run", help="run a scene", description=run.__doc__, **texts)
@@ -216,6 +224,7 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("--mode", choices=list(MODES), help="else as the scene says")
     command.add_argument("--step", type=_duration, help="of time stepping [s]")
     command.add_argument("--record", type=Path, metavar="FILE", help="write the run to an HDF5 file")
+    command.add_argument("--overwrite", action="store_true", help="replace the file of --record if it exists")
     command.add_argument("--interval", type=_duration, metavar="TIME", help="between recorded samples [s]")
     command.add_argument("--view", type=Path, metavar="PAGE", help="write a page for the browser")
     command.add_argument("--vtk", type=Path, metavar="SERIES", help="write a series for ParaView (.pvd)")

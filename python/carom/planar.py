@@ -1,4 +1,12 @@
 """Parts of models in the plane, mass properties, and usual shapes on ground."""
 
+import typing as _typing
+
 from ._core.planar import *  # noqa: F403
 from ._core import ground as ground
+from ._missing import missing as _missing
+
+if not _typing.TYPE_CHECKING:  # a checker would believe that there is everything
+
+    def __getattr__(name: str) -> object:
+        raise _missing(__name__, name)

@@ -11,8 +11,9 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from . import _core
+from .event_list import EventList
 
-__all__ = ["Table", "of", "of_energy", "of_events", "of_parts"]
+__all__ = ["Table", "of", "of_energy", "of_event_list", "of_events", "of_parts"]
 
 _MOST_ROWS = 30
 
@@ -114,8 +115,13 @@ def of_energy(ledger: _core.EnergyLedger) -> Table:
 
 def of_events(simulation: _core.Simulation, first: int = 0) -> Table:
     """The events of a simulation from the one numbered `first` on: when, what, where, and velocities."""
-    rows = []
-    for event in simulation.events(first):
+    return of_event_list(simulation.events(first))
+
+
+def of_event_list(events: EventList) -> Table:
+    """Events of a simulation, or some of them, likewise."""
+    rows, simulation = [], events.simulation
+    for event in events:
         before, after = event.velocity_before, event.velocity_after
         rows.append(
             [event.time, event.kind, simulation.name(event), event.mode, before, after, event.impulse]

@@ -77,10 +77,12 @@ void bind_cross_check(nb::module_& core) {
       "cross_check",
       [](Model& system, const CrossCheckOptions& options) {
         check_threads(system, options.time_stepping);
-        if (!find_python_part(system).empty() || options.stop_when) return cross_check(system.get(), options);
+        CrossCheckOptions watched = options;
+        watched.stop_when = stop_or_signal(options.stop_when);
+        if (!find_python_part(system).empty() || options.stop_when) return cross_check(system.get(), watched);
         const System copy = system.get();
         const nb::gil_scoped_release release;
-        return cross_check(copy, options);
+        return cross_check(copy, watched);
       },
       nb::arg("system"), nb::arg("options"), doc("cross_check"));
 }
@@ -112,7 +114,9 @@ void bind_equilibrium(nb::module_& core) {
   core.def(
       "find_equilibrium",
       [](Model& system, const EquilibriumOptions& options) {
-        return find_equilibrium(system.get(), options);
+        EquilibriumOptions watched = options;
+        watched.stop_when = stop_or_signal(options.stop_when);
+        return find_equilibrium(system.get(), watched);
       },
       nb::arg("system"), nb::arg("options") = EquilibriumOptions{},
       nb::sig("def find_equilibrium(system: System, options: EquilibriumOptions = ...) -> Equilibrium"),

@@ -28,5 +28,6 @@ void bind_recording(nanobind::module_& core);
 void bind_analysis(nanobind::module_& core);
 void bind_problems(nanobind::module_& core);
 void bind_checks(nanobind::module_& core);
+void bind_signatures(nanobind::module_& core);
 
 }  // namespace carom_python

@@ -20,6 +20,14 @@ void refuse(std::string_view where, std::string_view expected, nb::handle value)
   throw nb::type_error(text.c_str());
 }
 
+std::string nearest_of(std::string_view word, const std::vector<std::string>& known) {
+  nb::list words;
+  for (const std::string& each : known) words.append(nb::str(each.data(), each.size()));
+  const nb::object close = nb::module_::import_("difflib").attr("get_close_matches")(
+      nb::str(word.data(), word.size()), words, nb::arg("n") = 1);
+  return nb::len(close) == 0 ? "" : "; the nearest is '" + nb::cast<std::string>(close[0]) + "'";
+}
+
 namespace {
 
 bool is_number(nb::handle from) {

@@ -29,6 +29,9 @@ namespace nb = nanobind;
 /// Raises TypeError: "<where> must be <expected>, not <value>".
 [[noreturn]] void refuse(std::string_view where, std::string_view expected, nb::handle value);
 
+/// "; the nearest is 'mass'": the known word that is most like a given one; empty where none is like it.
+[[nodiscard]] std::string nearest_of(std::string_view word, const std::vector<std::string>& known);
+
 /// How a type of fields is called.
 struct TypeNames {
   std::string accepts;  ///< in the signature of a constructor

@@ -4,6 +4,7 @@
 // given by numbers.
 
 #include "number_law.h"
+#include "watch.h"
 
 #include <functional>
 #include <memory>
@@ -29,7 +30,7 @@ struct PythonLaw {
   std::string where;
   R operator()(A... arguments) const {
     const nb::gil_scoped_acquire lock;
-    return read<R>(function.get()(arguments...), "result of " + where);
+    return read<R>(call_python([&] { return function.get()(arguments...); }), "result of " + where);
   }
 };
 /// A law by address: R is a number, or numbers that it writes behind its last argument.

@@ -1,8 +1,12 @@
 #include "ids.h"
 
 #include "bind.h"
+#include "part_names.h"
 
+#include <algorithm>
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace carom_python {
 
@@ -33,11 +37,38 @@ void bind_id(nb::module_& core, const char* text) {
         if constexpr (std::is_same_v<Id, carom::BodyId>) {
           if (self == carom::ground) return std::string("ground");
         }
-        return shown + "(" + std::to_string(self.serial) + ")";
+        const std::string name = find_part_name(IdName<Tag>::name, self.token, self.serial);
+        const std::string text =
+            name.empty() ? "" : ", " + nb::cast<std::string>(nb::repr(nb::str(name.c_str())));
+        return shown + "(" + std::to_string(self.serial) + text + ")";
       });
 }
 
 }  // namespace
+
+namespace {
+
+/// Names of materials that parts have before they are added. The token is of no system.
+constexpr carom::Index named_token = static_cast<carom::Index>(-2);
+
+std::vector<std::string>& material_names() {
+  static std::vector<std::string> names;
+  return names;
+}
+
+}  // namespace
+
+carom::MaterialId named_material(const std::string& name) {
+  std::vector<std::string>& names = material_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  const auto place = static_cast<carom::Index>(found - names.begin());
+  if (found == names.end()) names.push_back(name);
+  return {place, named_token};
+}
+
+const std::string* name_of_material(carom::MaterialId id) {
+  return id.token == named_token ? &material_names()[id.serial] : nullptr;
+}
 
 void bind_ids(nb::module_& core) {
   bind_id<carom::BodyTag>(core, "Identity of a body.");

@@ -50,6 +50,31 @@ struct Convert<carom::Id<Tag>> {
   static nb::object cast(const Id& value) { return nb::cast(value, nb::rv_policy::copy); }
 };
 
+/// A material by its name, until the part that has it is added to a system.
+[[nodiscard]] carom::MaterialId named_material(const std::string& name);
+/// The name of such a material; null of others.
+[[nodiscard]] const std::string* name_of_material(carom::MaterialId id);
+
+/// Materials are given by their identity, or by their name.
+template <>
+struct Convert<carom::MaterialId> {
+  static TypeNames names() {
+    return {"carom._core.MaterialId | str", "carom._core.MaterialId | str", "MaterialId"};
+  }
+  static void load(nb::handle from, carom::MaterialId& to, std::string_view where) {
+    if (nb::isinstance<nb::str>(from)) {
+      to = named_material(nb::cast<std::string>(from));
+      return;
+    }
+    to = *static_cast<carom::MaterialId*>(
+        load_instance(from, typeid(carom::MaterialId), where, "a MaterialId, or the name of a material"));
+  }
+  static nb::object cast(const carom::MaterialId& value) {
+    if (const std::string* const name = name_of_material(value)) return nb::str(name->data(), name->size());
+    return nb::cast(value, nb::rv_policy::copy);
+  }
+};
+
 template <int D>
 struct Convert<carom::End<D>> {
   static TypeNames names() {

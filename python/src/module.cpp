@@ -28,4 +28,5 @@ NB_MODULE(_core, core) {
   bind_analysis(core);
   bind_problems(core);
   bind_checks(core);
+  bind_signatures(core);
 }

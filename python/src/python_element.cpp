@@ -46,7 +46,7 @@ void PythonElement<D>::loads(const ElementView<D>& at, ElementLoads<D>& out) con
     nb::inst_ptr<LoadsOut<D>>(loads_out)->out = nullptr;
   };
   try {
-    object.get().attr("loads")(seen, loads_out);
+    call_python([&] { return object.get().attr("loads")(seen, loads_out); });
   } catch (...) {
     close();
     throw;
@@ -60,7 +60,8 @@ double PythonElement<D>::potential(const ElementView<D>& at) const {
   View<D> view{&at};
   nb::object seen = nb::cast(&view, nb::rv_policy::copy);
   try {
-    const double value = read<double>(object.get().attr("potential")(seen), "result of potential()");
+    const nb::object given = call_python([&] { return object.get().attr("potential")(seen); });
+    const double value = read<double>(given, "result of potential()");
     nb::inst_ptr<View<D>>(seen)->at = nullptr;
     return value;
   } catch (...) {

@@ -81,6 +81,12 @@ const Record* record_of(nb::handle type) {
   return found != by_type().end() ? found->second : nullptr;
 }
 
+std::vector<std::string> Record::field_names() const {
+  std::vector<std::string> names;
+  for (const Field& field : fields) names.push_back(field.python());
+  return names;
+}
+
 const Field* Record::find(std::string_view field) const {
   const auto found = std::ranges::find_if(
       fields, [&](const Field& each) { return each.name == field || each.python() == field; });
@@ -100,9 +106,11 @@ void Record::set(void* record, const nb::args& given, const nb::kwargs& named) c
     const auto word = nb::cast<std::string_view>(key);
     const Field* const field = find(word);
     if (field == nullptr || (given.size() == 1 && field == &fields.front())) {
-      std::string text = name + (field == nullptr ? " has no argument '" : " has two values of '") +
-                         std::string(word) + "'; arguments:";
+      std::string text =
+          name + (field == nullptr ? " has no argument '" : " has two values of '") + std::string(word) + "'";
+      text += "; arguments:";
       for (const Field& each : fields) text += (&each == &fields.front() ? " " : ", ") + each.python();
+      if (field == nullptr) text += nearest_of(word, field_names());
       throw nb::type_error(text.c_str());
     }
     field->type->load(value, field->of(record), field->argument);
@@ -121,9 +129,10 @@ void Record::set_from(void* record, const nb::dict& named, std::string_view wher
   for (const auto& [key, value] : named) {
     const Field* const field = nb::isinstance<nb::str>(key) ? find(nb::cast<std::string_view>(key)) : nullptr;
     if (field == nullptr || field->type->load == nullptr) {
-      std::string text =
-          place + ": " + name + " has no field " + nb::cast<std::string>(nb::repr(key)) + "; fields:";
+      std::string text = place + ": " + name + " has no field " + nb::cast<std::string>(nb::repr(key));
+      text += "; fields:";
       for (const Field& each : fields) text += (&each == &fields.front() ? " " : ", ") + each.python();
+      if (nb::isinstance<nb::str>(key)) text += nearest_of(nb::cast<std::string_view>(key), field_names());
       throw nb::type_error(text.c_str());
     }
     field->type->load(value, field->of(record), place + "['" + field->name + "']");

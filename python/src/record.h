@@ -76,6 +76,8 @@ struct Record {
   void set_from(void* record, const nb::dict& named, std::string_view where) const;
   /// Field of that name, in C++ or in Python; null if none.
   [[nodiscard]] const Field* find(std::string_view field) const;
+  /// Names of the fields in Python.
+  [[nodiscard]] std::vector<std::string> field_names() const;
   /// "RigidBody(mass=..., angle=0.5)": fields that are not as by default.
   [[nodiscard]] std::string text(const void* record) const;
   /// Signature of the constructor.

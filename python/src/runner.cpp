@@ -4,7 +4,6 @@
 #include <carom/core/layout.h>
 
 #include <algorithm>
-#include <chrono>
 
 namespace carom_python {
 
@@ -26,36 +25,16 @@ void check_threads(const Journal& journal, const Mode& mode) {
                    "; allowed: threads = 1, or a compiled function (of ctypes, or numba.cfunc)");
 }
 
-namespace {
-
-/// Lets signals of the system (Ctrl-C) end a run: asked in every sweep, it looks a few times a second.
-class Signals {
-public:
-  explicit Signals(StopFunction stop) : stop_(std::move(stop)) {}
-  bool operator()() {
-    if (stop_ && stop_()) return true;
-    if (++count_ % 64 != 0) return false;
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(50)) return false;
-    last_ = now;
-    const nb::gil_scoped_acquire lock;
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    return false;
-  }
-
-private:
-  StopFunction stop_;
-  unsigned count_ = 0;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-}  // namespace
-
 Runner::Runner(const Model& model, const Mode& mode) : journal_(model) {
   check_threads(journal_, mode);
   simulation_ = std::make_unique<Simulation>(model.system, mode);
   python_laws_ = !find_python_part(journal_).empty();
-  install_stop();
+  simulation_->interrupt_when(
+      [this] {
+        watch_.look(simulation_->time());
+        return false;
+      },
+      [this](double time) { watch_.reach(time); });
 }
 
 void Runner::check_thread() const {
@@ -64,20 +43,13 @@ void Runner::check_thread() const {
   }
 }
 
-void Runner::install_stop() {
-  // In the event-driven mode a function that is asked would change how run_until() cuts the run into steps.
-  const bool stepping = std::holds_alternative<TimeStepping>(simulation_->mode());
-  if (stepping || stop_) {
-    simulation_->stop_when(Signals(stop_));
-  } else {
-    simulation_->stop_when({});
-  }
+void Runner::stop_when(StopFunction stop) {
+  get().stop_when(stop);
+  stop_ = std::move(stop);
 }
 
-void Runner::stop_when(StopFunction stop) {
-  get();
-  stop_ = std::move(stop);
-  install_stop();
+void Runner::run_until(double time, Watch::Show show) {
+  run([&](Simulation& simulation) { simulation.run_until(time); }, std::move(show));
 }
 
 std::size_t Runner::keep(nb::handle function) {
@@ -133,7 +105,6 @@ void Runner::edit(nb::handle change) {
 void Runner::switch_to(const Mode& mode) {
   check_threads(journal_, mode);
   get().switch_to(mode);
-  install_stop();
 }
 
 const std::vector<std::pair<BodyId, BodySlot>>& Runner::slots() {

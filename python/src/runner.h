@@ -3,6 +3,7 @@
 // The Simulation of Python: a carom::Simulation, the parts of its model, and the functions that it calls.
 
 #include "model.h"
+#include "watch.h"
 
 #include <carom/integrators/simulation.h>
 
@@ -35,19 +36,26 @@ public:
     if (thread_.load(std::memory_order_relaxed) != std::thread::id()) check_thread();
     return *simulation_;
   }
-  /// Runs `work` with the interpreter's lock released, unless something in Python is called in it.
+  /// Runs `work` with the interpreter's lock released, unless something in Python is called in it. Ctrl-C
+  /// ends it. \param show as Watch::begin()
   template <class Work>
-  void run(const Work& work) {
+  void run(const Work& work, Watch::Show show = {}) {
     get();
     const std::thread::id before = thread_.exchange(std::this_thread::get_id());
     const Restore restore{thread_, before};
+    if (before != std::thread::id()) return work(*simulation_);  // which refuses
+    const Watched watched{watch_};
+    watch_.begin(std::move(show));
     if (calls_python()) {
       work(*simulation_);
     } else {
       const nb::gil_scoped_release release;
       work(*simulation_);
     }
+    watch_.finish(simulation_->time());
   }
+  /// Simulation::run_until(). \param show as Watch::begin()
+  void run_until(double time, Watch::Show show);
   /// The model, as a copy of its own; the same object until the next edit.
   [[nodiscard]] nb::object system();
   void edit(nb::handle change);
@@ -75,11 +83,15 @@ private:
     std::thread::id before;
     ~Restore() { thread.store(before); }
   };
+  struct Watched {
+    Watch& watch;
+    ~Watched() { watch.begin({}); }
+  };
   void check_thread() const;
   [[nodiscard]] bool calls_python() const { return python_laws_ || !kept_.empty() || stop_; }
-  void install_stop();
 
   Journal journal_;
+  Watch watch_;
   std::unique_ptr<carom::Simulation> simulation_;
   std::map<std::size_t, nb::object> kept_;
   std::size_t next_ = 0;

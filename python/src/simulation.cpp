@@ -126,6 +126,29 @@ constexpr const char* no_mode =
     "EventDriven() integrates from event to event; for example Simulation(system, TimeStepping(step=1e-3))";
 constexpr const char* array = "numpy.typing.NDArray[numpy.float64]";
 
+constexpr const char* progress_text =
+    "\n\nprogress: True shows how far the run is, by tqdm where that is installed, in a notebook too; or a "
+    "function that gets the time reached [s], ten times a second and at the end. It changes no bit of the "
+    "run. "
+    "Ctrl-C ends the run with KeyboardInterrupt at a good state, from which it can go on.";
+
+void run_until(Runner& self, nb::handle time, nb::handle progress) {
+  const auto until = read<double>(time, "run_until(): time");
+  if (progress.is_none() || progress.ptr() == Py_False) return self.run_until(until, {});
+  if (progress.ptr() != Py_True && PyCallable_Check(progress.ptr()) == 0) {
+    refuse("run_until(): progress", "True, False, None or a function of the time", progress);
+  }
+  const nb::object shown =
+      nb::module_::import_("carom.progress").attr("begin")(progress, self.get().time(), until);
+  try {
+    self.run_until(until, [&](double reached) { shown.attr("update")(reached); });
+  } catch (...) {
+    shown.attr("close")();
+    throw;
+  }
+  shown.attr("close")();
+}
+
 void bind_runs(Class& type) {
   type.def(
           "__init__",
@@ -150,13 +173,10 @@ void bind_runs(Class& type) {
             return self.get().report();
           },
           (std::string(doc("Simulation.step")) + " Returns the report of the step: a copy.").c_str())
-      .def(
-          "run_until",
-          [](Runner& self, nb::handle time) {
-            const auto until = read<double>(time, "run_until(): time");
-            self.run([until](Simulation& simulation) { simulation.run_until(until); });
-          },
-          nb::arg("time"), nb::sig("def run_until(self, time: float) -> None"), doc("Simulation.run_until"))
+      .def("run_until", &run_until, nb::arg("time"), nb::kw_only(), nb::arg("progress") = nb::none(),
+           nb::sig("def run_until(self, time: float, *, progress: bool | "
+                   "collections.abc.Callable[[float], typing.Any] | None = None) -> None"),
+           (std::string(doc("Simulation.run_until")) + progress_text).c_str())
       .def("observe", &observe, nb::arg("observer"),
            nb::sig("def observe(self, observer: collections.abc.Callable[[Simulation], typing.Any]) -> "
                    "CallbackId"),
@@ -207,6 +227,57 @@ void bind_runs(Class& type) {
           doc("Simulation.show_progress"));
 }
 
+nb::object event_list(Runner& self, std::size_t first) {
+  return nb::module_::import_("carom.event_list").attr("EventList")(events_from(self, first), nb::find(self));
+}
+
+// Changes the state of one body.
+void set_motion(Runner& self, BodyId body, std::optional<nb::object> vector, std::optional<double> turn,
+                bool of_velocity) {
+  State state = self.get().state();
+  VectorMap to = of_velocity ? state.velocity(body) : state.position(body);
+  if (vector) {
+    load_numbers(*vector, to.data(), static_cast<std::size_t>(to.size()),
+                 of_velocity ? "set_velocity(): velocity" : "set_position(): position",
+                 to.size() == 2 ? "two numbers (x, y)" : "three numbers");
+  }
+  if (turn) (of_velocity ? state.spin(body) : state.angle(body)) = *turn;
+  self.get().set_state(state);
+}
+
+std::string shown(Runner& self) {
+  const Simulation& simulation = self.get();
+  const bool stepping = std::holds_alternative<TimeStepping>(simulation.mode());
+  return "<Simulation" + summary_of(self.journal()) + "; " + (stepping ? "TimeStepping" : "EventDriven") +
+         " at " + nb::cast<std::string>(nb::str("{:g}").format(simulation.time())) + " s>";
+}
+
+void bind_changes(Class& type) {
+  type.def(
+          "set_velocity",
+          [](Runner& self, BodyId body, nb::object velocity, std::optional<double> spin) {
+            set_motion(self, body, std::move(velocity), spin, true);
+          },
+          nb::arg("body"), nb::arg("velocity"), nb::arg("spin") = nb::none(),
+          nb::sig(
+              "def set_velocity(self, body: BodyId, velocity: numpy.typing.ArrayLike, spin: float | None = "
+              "None) -> None"),
+          "Sets the velocity of a body [m/s], and its spin if it is given [rad/s]: set_state() with that "
+          "change, so joints are satisfied after it, and the ledger books an intervention.")
+      .def(
+          "set_position",
+          [](Runner& self, BodyId body, nb::object position, std::optional<double> angle) {
+            set_motion(self, body, std::move(position), angle, false);
+          },
+          nb::arg("body"), nb::arg("position"), nb::arg("angle") = nb::none(),
+          nb::sig(
+              "def set_position(self, body: BodyId, position: numpy.typing.ArrayLike, angle: float | None "
+              "= None) -> None"),
+          "Sets the position of a body [m], and its angle if it is given [rad]: set_state() with that "
+          "change.")
+      .def("__repr__", &shown);
+}
+
 void bind_results(Class& type) {
   type.def("system", &Runner::system, nb::sig("def system(self) -> System"),
            "The model: a copy, changed with edit() only; the same object until the next edit.")
@@ -229,9 +300,10 @@ void bind_results(Class& type) {
       .def(
           "contact_statistics", [](Runner& self) { return self.get().contact_statistics(); },
           doc("Simulation.contact_statistics"))
-      .def("events", &events_from, nb::arg("first") = 0,
-           nb::sig("def events(self, first: int = 0) -> list[EventRecord]"),
-           "Events of the event-driven mode, in order of time, from the one numbered `first` on: copies.")
+      .def("events", &event_list, nb::arg("first") = 0,
+           nb::sig("def events(self, first: int = 0) -> carom.event_list.EventList"),
+           "Events of the event-driven mode, in order of time, from the one numbered `first` on: copies. "
+           "Notebooks show the list as a table.")
       .def(
           "event_count", [](Runner& self) { return self.get().events().size(); },
           "Number of events that are kept.")
@@ -330,6 +402,7 @@ void bind_simulation(nb::module_& core) {
   Class type(core, "Simulation", nb::type_slots(slots), doc("Simulation"));
   bind_runs(type);
   bind_results(type);
+  bind_changes(type);
   bind_arrays(type);
 }
 

@@ -39,6 +39,12 @@ void assign(std::vector<double>& numbers, nb::handle value, const char* where) {
   std::ranges::copy(read, numbers.begin());
 }
 
+// Writes two numbers, or in space three.
+void put(VectorMap to, nb::handle value, const char* call) {
+  load_numbers(value, to.data(), static_cast<std::size_t>(to.size()), std::string(call) + ": value",
+               to.size() == 2 ? "two numbers (x, y)" : "three numbers");
+}
+
 constexpr const char* array_type = "numpy.typing.NDArray[numpy.float64]";
 
 template <std::vector<double> State::*member>
@@ -89,6 +95,22 @@ void bind_state(nb::module_& core) {
       .def(
           "set_spin", [](State& self, BodyId body, double value) { self.spin(body) = value; },
           nb::arg("body"), nb::arg("value"), "Sets the spin of a planar rigid body [rad/s].")
+      .def(
+          "set_position",
+          [](State& self, BodyId body, nb::handle value) {
+            put(self.position(body), value, "set_position()");
+          },
+          nb::arg("body"), nb::arg("value"),
+          nb::sig("def set_position(self, body: BodyId, value: numpy.typing.ArrayLike) -> None"),
+          "Sets the position of the centre of mass [m].")
+      .def(
+          "set_velocity",
+          [](State& self, BodyId body, nb::handle value) {
+            put(self.velocity(body), value, "set_velocity()");
+          },
+          nb::arg("body"), nb::arg("value"),
+          nb::sig("def set_velocity(self, body: BodyId, value: numpy.typing.ArrayLike) -> None"),
+          "Sets the velocity of the centre of mass [m/s].")
       .def("coordinate", &State::coordinate, nb::arg("joint"), doc("State.coordinate"))
       .def("rate", &State::rate, nb::arg("joint"), doc("State.rate"))
       .def(

@@ -9,6 +9,8 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace carom_python {
 
@@ -38,6 +40,24 @@ std::string find_python_part(const Journal& journal) {
   return {};
 }
 
+std::string summary_of(const Journal& journal) {
+  std::string text;
+  if (!journal.title.empty()) text += " " + nb::cast<std::string>(nb::repr(nb::str(journal.title.c_str())));
+  text += ":";
+  constexpr std::array<std::pair<Role, const char*>, 5> roles{{{Role::body, "bodies"},
+                                                               {Role::joint, "joints"},
+                                                               {Role::force, "elements"},
+                                                               {Role::shape, "shapes"},
+                                                               {Role::obstacle, "obstacles"}}};
+  for (const auto& [role, several] : roles) {
+    const auto count = std::ranges::count(journal.entries, role, &Entry::role);
+    if (count == 0) continue;
+    text += (text.back() == ':' ? " " : ", ") + std::to_string(count) + " " +
+            (count == 1 ? role_name(role) : several);
+  }
+  return text.back() == ':' ? text + " no parts" : text;
+}
+
 namespace {
 
 template <class Id>
@@ -48,6 +68,41 @@ void drop(Model& model, Role role, Id id) {
 
 Index serial_of(nb::handle id) { return nb::cast<Index>(id.attr("serial")); }
 
+MaterialId material(Model& model, const std::string& name) {
+  const MaterialId id = model.get().material(name);
+  if (std::ranges::find(model.materials, name) == model.materials.end()) model.materials.push_back(name);
+  model.names->add("MaterialId", id.serial, name);
+  return id;
+}
+
+// A material given by its identity or its name; a new name makes a material.
+MaterialId material_of(Model& model, nb::handle from, const char* where) {
+  const auto id = read<MaterialId>(from, where);
+  const std::string* const name = name_of_material(id);
+  return name != nullptr ? material(model, *name) : id;
+}
+
+// A material that a law is asked for; a name must be one of the system.
+MaterialId known_material(Model& model, nb::handle from, const char* where) {
+  const auto id = read<MaterialId>(from, where);
+  const std::string* const name = name_of_material(id);
+  if (name == nullptr) return id;
+  if (std::ranges::find(model.materials, *name) == model.materials.end()) {
+    throw ModelError("material '" + *name + "': there is none" + nearest_of(*name, model.materials) +
+                     "; allowed: the name of a material of this system");
+  }
+  return material(model, *name);
+}
+
+// Materials that a part has by their names become those of the system.
+void find_materials(Model& model, const Record& record, void* part) {
+  for (const Field& field : record.fields) {
+    if (field.type != &field_type<MaterialId>()) continue;
+    auto& id = *static_cast<MaterialId*>(field.of(part));
+    if (const std::string* const name = name_of_material(id)) id = material(model, *name);
+  }
+}
+
 // Adds a part; `surface` of a shape on ground, or null.
 nb::object add(Model& model, nb::handle part, const Surface* surface, std::string name) {
   Entry entry;
@@ -57,6 +112,7 @@ nb::object add(Model& model, nb::handle part, const Surface* surface, std::strin
   if (const PartType* const type = part_type(part.type())) {
     entry.role = type->role;
     entry.part = type->copy(nb::inst_ptr<void>(part));
+    find_materials(model, *type->record, nb::inst_ptr<void>(entry.part));
     id = type->add(model.get(), nb::inst_ptr<void>(entry.part), surface, std::move(name));
   } else {
     entry.role = Role::force;
@@ -65,6 +121,9 @@ nb::object add(Model& model, nb::handle part, const Surface* surface, std::strin
   }
   entry.serial = serial_of(id);
   entry.id = id;
+  if (!entry.name.empty()) {
+    model.names->add(nb::cast<std::string>(id.type().attr("__name__")), entry.serial, entry.name);
+  }
   model.entries.push_back(std::move(entry));
   return id;
 }
@@ -101,13 +160,9 @@ nb::object add_obstacle(Model& model, nb::handle part, nb::handle surface, nb::h
   return add(model, part, law ? &*law : nullptr, std::move(label));
 }
 
-MaterialId material(Model& model, const std::string& name) {
-  const MaterialId id = model.get().material(name);
-  if (std::ranges::find(model.materials, name) == model.materials.end()) model.materials.push_back(name);
-  return id;
-}
-
-void between(Model& model, MaterialId a, MaterialId b, const Surface& surface) {
+void between(Model& model, nb::handle first, nb::handle second, const Surface& surface) {
+  const MaterialId a = material_of(model, first, "between(): a");
+  const MaterialId b = material_of(model, second, "between(): b");
   model.get().between(a, b, surface);
   const auto name_of = [&](MaterialId id) {
     return id.serial < model.materials.size() ? model.materials[id.serial] : std::string();
@@ -224,7 +279,9 @@ void bind_queries(nb::class_<Model>& type) {
 
 void bind_laws_of(nb::class_<Model>& type) {
   type.def("material", &material, nb::arg("name"), doc("System.material"))
-      .def("between", &between, nb::arg("a"), nb::arg("b"), nb::arg("surface"), doc("System.between"))
+      .def("between", &between, nb::arg("a"), nb::arg("b"), nb::arg("surface"),
+           nb::sig("def between(self, a: MaterialId | str, b: MaterialId | str, surface: Surface) -> None"),
+           (std::string(doc("System.between")) + " Materials may be given by their names.").c_str())
       .def(
           "set_default_law",
           [](Model& self, const Surface& surface) {
@@ -234,18 +291,23 @@ void bind_laws_of(nb::class_<Model>& type) {
           nb::arg("surface"), doc("System.set_default_law"))
       .def(
           "law",
-          [](Model& self, MaterialId a, MaterialId b) {
-            return Convert<std::optional<Surface>>::cast(self.get().law(a, b));
-          },
-          nb::arg("a"), nb::arg("b"),
-          nb::sig("def law(self, a: MaterialId, b: MaterialId) -> Surface | None"), doc("System.law"))
-      .def(
-          "law",
-          [](Model& self, MaterialId a, ObstacleId b) {
-            return Convert<std::optional<Surface>>::cast(self.get().law(a, b));
+          [](Model& self, nb::handle a, ObstacleId b) {
+            const MaterialId one = known_material(self, a, "law(): a");
+            return Convert<std::optional<Surface>>::cast(self.get().law(one, b));
           },
           nb::arg("a"), nb::arg("obstacle"),
-          nb::sig("def law(self, a: MaterialId, obstacle: ObstacleId) -> Surface | None"), doc("System.law"))
+          nb::sig("def law(self, a: MaterialId | str, obstacle: ObstacleId) -> Surface | None"),
+          doc("System.law"))
+      .def(
+          "law",
+          [](Model& self, nb::handle a, nb::handle b) {
+            const MaterialId one = known_material(self, a, "law(): a"),
+                             other = known_material(self, b, "law(): b");
+            return Convert<std::optional<Surface>>::cast(self.get().law(one, other));
+          },
+          nb::arg("a"), nb::arg("b"),
+          nb::sig("def law(self, a: MaterialId | str, b: MaterialId | str) -> Surface | None"),
+          doc("System.law"))
       .def_prop_ro(
           "default_law",
           [](const Model& self) { return Convert<std::optional<Surface>>::cast(self.default_law); },
@@ -304,10 +366,17 @@ void bind_laws_of(nb::class_<Model>& type) {
 void bind_system(nb::module_& core) {
   bind_entry(core);
   nb::class_<Model> type(core, "System", doc("System"));
-  type.def(nb::init<>()).def("__copy__", [](Model& self) {
-    self.get();
-    return Model(self);
-  });
+  type.def(nb::init<>())
+      .def("__copy__",
+           [](Model& self) {
+             self.get();
+             return Model(self);
+           })
+      .def_rw(
+          "title", &Model::title,
+          "What the model is called where it is shown; load_scene() gives the name of the file. No part of "
+          "the model.")
+      .def("__repr__", [](const Model& self) { return "<System" + summary_of(self) + ">"; });
   bind_add<Role::body>(type, "BodyId");
   bind_add<Role::force>(type, "ElementId");
   bind_add<Role::joint>(type, "JointId");

@@ -283,3 +283,19 @@ def test_check_tells_joints_that_are_drawn_open(tmp_path, capsys):
     carom.save_scene(system, tmp_path / "scene.json")
     assert main(["check", str(tmp_path / "scene.json")]) == 1
     assert "revolute joint 'pin' by 0.5 m: open as described" in capsys.readouterr().out
+
+
+def test_a_record_that_exists_is_kept(tmp_path, capsys):
+    recording = pytest.importorskip("carom.recording")
+    pytest.importorskip("h5py")
+    record = tmp_path / "run.h5"
+    words = ["run", str(BALL), "--record", str(record)]
+    assert main([*words, "--until", "0.5"]) == 0
+    before = record.read_bytes()
+    assert main(words) == 2
+    assert "run.h5 exists; --overwrite replaces it" in capsys.readouterr().err
+    assert record.read_bytes() == before
+    assert main([*words, "--overwrite"]) == 0
+    assert recording.load_recording(record).times[-1] == 2.0
+    assert main(["run", str(BALL), "--overwrite"]) == 2
+    assert "give --record" in capsys.readouterr().err

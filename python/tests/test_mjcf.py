@@ -302,3 +302,22 @@ def test_a_long_chain_is_read(model):
     bodies = [part.part for part in load_mjcf(file).system.parts() if part.role == "body"]
     # Each is the mean of one solid: m x/m, to rounding.
     assert [body.position[0] for body in bodies] == pytest.approx(range(1, 601), rel=1e-15)
+
+
+def test_what_is_left_out_is_told(tmp_path, capsys):
+    file = tmp_path / "cart.xml"
+    file.write_text(CART)
+    scene = load_mjcf(file)
+    assert set(scene.left_out) == {
+        "timestep of <option>",
+        "<visual>",
+        "rgba of <geom>",
+        "<light>",
+        "<site>: mount",
+        "geom that touches nothing: cart",
+        "actuator <motor>",
+    }
+    assert load_robot(file).left_out == scene.left_out
+    assert main(["import", str(file), str(tmp_path / "cart.json")]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[1:] == [f"left out: {each}" for each in scene.left_out]

@@ -158,3 +158,28 @@ def test_command_makes_a_scene(robot, tmp_path, capsys):
         load_urdf(tmp_path / "none.urdf")
     with pytest.raises(carom.ModelError, match="plane is 'zx'; allowed: xy, xz, yz"):
         load_urdf(robot(), plane="zx")
+
+
+def test_what_is_left_out_is_told(tmp_path, capsys):
+    file = tmp_path / "arm.urdf"
+    visual = '<visual><geometry><sphere radius="1"/></geometry></visual>'
+    text = ARM.replace('<link name="upper">', f'<link name="upper">{visual}')
+    text = text.replace('<link name="fore">', f'<link name="fore">{visual}')
+    text = text.replace("</robot>", '<transmission name="gear"/><gazebo/><material name="red"/></robot>')
+    file.write_text(text)
+    scene = load_urdf(file)
+    assert scene.left_out == [
+        "<transmission>: 'gear'",
+        "<gazebo>",
+        "<material>: 'red'",
+        "<visual> (2): link 'upper', link 'fore'",
+        "limit of effort: joint 'shoulder'",
+        "limit of velocity: joint 'shoulder'",
+    ]
+    assert repr(scene.system).startswith("<System 'arm.urdf': 2 bodies")
+    assert main(["import", str(file), str(tmp_path / "arm.json")]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said == [f"scene: {tmp_path / 'arm.json'}", *(f"left out: {each}" for each in scene.left_out)]
+    file.write_text(ARM.replace(' effort="1" velocity="1"', ""))
+    assert load_urdf(file).left_out == []
+    assert carom.load_scene(tmp_path / "arm.json").left_out == []

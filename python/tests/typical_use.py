@@ -40,6 +40,10 @@ if TYPE_CHECKING:
         floor = planar.HalfPlane(normal=numpy.array([0.0, 1.0]))
         assert_type(system.add(floor, Surface(friction=0.5, normal_restitution=0.5), "floor"), ObstacleId)
         assert_type(system.add(floor, "second"), ObstacleId)
+        system.add(planar.Disc(body=body, radius=0.1, material="steel"))
+        system.between("steel", system.material("ice"), Surface(friction=0.0, normal_restitution=0.0))
+        assert_type(system.law("steel", "ice"), Surface | None)
+        assert_type(system.title, str)
         system.add(planar.Motor(joint=joint, torque=lambda time, angle, rate: -0.1 * rate))
 
     def runs(system: System, body: BodyId) -> None:
@@ -50,6 +54,14 @@ if TYPE_CHECKING:
         assert_type(simulation.position(body), Numbers)
         assert_type(simulation.positions(), Numbers)
         assert_type(simulation.events()[0].kind, carom.EventKind)
+        records: list[carom.EventRecord] = simulation.events()[1:]
+        simulation.run_until(1.0, progress=True)
+        simulation.run_until(2.0, progress=lambda reached: print(reached, len(records)))
+        simulation.set_velocity(body, (1.0, 0.0), spin=2.0)
+        simulation.set_position(body, numpy.zeros(2))
+        simulation.state().set_velocity(body, [0.0, 1.0])
+        with carom.Recorder(simulation, "run.h5", overwrite=True) as recorder:
+            assert_type(recorder.recording().body_names(), list[str])
         assert_type(simulation.energy().flow("external"), float)
         assert_type(simulation.state().q, Numbers)
         assert_type(simulation.report().contacts[0].impulse[0], float)
@@ -68,6 +80,7 @@ if TYPE_CHECKING:
         carom.save_scene(system, path, mode=TimeStepping(impact_rules=rules), until=1.0)
         assert_type(scene.to_text(read), str)
         assert_type(scene.load_urdf(path, plane="xz"), carom.Scene)
+        assert_type(scene.load_urdf(path).left_out, list[str])
         assert_type(command.main(["check", str(path)]), int)
         try:
             scene.from_text("")
@@ -89,6 +102,8 @@ if TYPE_CHECKING:
         system.add(planar.Particle(mass=1.0), surface)  # type: ignore[call-overload]
         planar.Disc(body=joint, radius=0.1)  # type: ignore[arg-type]
         planar.Particle(masse=1.0)  # type: ignore[call-arg]
+        planar.Partcle  # type: ignore[attr-defined]
+        carom.Particle  # type: ignore[attr-defined]
         Simulation(system, "event_driven")  # type: ignore[arg-type]
         TimeStepping(impact_rules={"order": "sequential"})
         TimeStepping(impact_order="sequential")  # type: ignore[call-arg]

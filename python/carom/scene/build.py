@@ -28,11 +28,14 @@ Result = TypeVar("Result")
 
 @dataclasses.dataclass
 class Scene:
-    """What a scene file holds. mode and until [s] are None if it does not say how to run it."""
+    """What a scene file holds. mode and until [s] are None if it does not say how to run it. left_out: of a robot
+    description what the scene has no part for, a sentence each.
+    """
 
     system: _core.System
     mode: Optional[Mode] = None
     until: Optional[float] = None
+    left_out: list[str] = dataclasses.field(default_factory=list, compare=False, repr=False)
 
     def simulation(self) -> _core.Simulation:
         """A simulation at the start. Raises ModelError if the scene has no mode."""

@@ -86,4 +86,6 @@ def load_scene(path: Union[str, "os.PathLike[str]"]) -> Scene:
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         raise SceneError("is not in UTF-8", (), line, name) from error
-    return from_text(text, name)
+    scene = from_text(text, name)
+    scene.system.title = os.path.basename(name)
+    return scene

@@ -19,8 +19,21 @@ from .build import Scene
 from .errors import SceneError
 from .mjcf_contacts import Relations, Touch
 from .mjcf_solids import Solid, given_mass, read_solid, turn_of
-from .mjcf_words import IN_BODIES_LEFT_OUT, SECTIONS_LEFT_OUT, Defaults, check, label, refuse
-from .robot_xml import PARALLEL, PLANES, Array, Body, Element, Frame, Plane, given, placed, read_xml, world
+from .mjcf_words import IN_BODIES_LEFT_OUT, SECTIONS_LEFT_OUT, Defaults, check, label, note_left_out, refuse
+from .robot_xml import (
+    PARALLEL,
+    PLANES,
+    Array,
+    Body,
+    Element,
+    Frame,
+    LeftOut,
+    Plane,
+    given,
+    placed,
+    read_xml,
+    world,
+)
 
 
 def _is_on(element: Any, key: str, default: str) -> bool:
@@ -53,6 +66,7 @@ class _Reader:
         self._touch: Any = None
         self._relations = Relations()
         self.system = _core.System()
+        self.left_out = LeftOut()
 
     def read(self) -> None:
         """All of the model. Raises SceneError."""
@@ -144,6 +158,8 @@ class _Reader:
         if self._touch.touches(solid.element):
             contact = self._touch.fields(solid.element)
             self.system.add(solid.shape(self._plane, body, contact), name=solid.element.get("name", ""))
+        else:
+            self.left_out.add("geom that touches nothing", solid.element.get("name"))
 
     def _body(self, element: Any, outer: _Place) -> _Place:
         """A body in another."""
@@ -347,4 +363,6 @@ def load_mjcf(path: Union[str, os.PathLike[str]], plane: str = "xz", restitution
             reader.read()
     except SceneError as error:
         raise SceneError(error.message, error.path, error.line, os.fspath(path)) from error
-    return Scene(reader.system)
+    note_left_out(model, reader.left_out)
+    reader.system.title = os.path.basename(os.fspath(path))
+    return Scene(reader.system, left_out=reader.left_out.sentences())

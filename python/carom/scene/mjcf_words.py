@@ -10,7 +10,7 @@ import dataclasses
 from typing import Any
 
 from .errors import SceneError
-from .robot_xml import Element, placed
+from .robot_xml import Element, LeftOut, placed
 
 TURNS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 
@@ -97,6 +97,41 @@ def check(element: Any) -> None:
             raise refuse(element, f"{key} is {text!r}; a planar scene can only have {neutral[key]!r}")
         if key not in words.used and key not in words.left_out and key not in neutral:
             raise refuse(element, f"{key} has no counterpart in a planar scene")
+
+
+def note_left_out(model: Any, found: LeftOut) -> None:
+    """Notes what of a model is left out: sections, elements in bodies, motors, attributes."""
+    for element in model:
+        if element.tag in SECTIONS_LEFT_OUT:
+            found.add(f"<{element.tag}>")
+        elif element.tag == "actuator":
+            for motor in element:
+                found.add(f"actuator <{motor.tag}>", motor.get("name"))
+        elif element.tag == "default":
+            for child in element.iter():
+                if child.tag in _DEFAULTS_LEFT_OUT:
+                    found.add(f"<default> of <{child.tag}>", child.get("class"))
+                else:
+                    _note_attributes(child, found)
+        else:
+            _note_in(element, found)
+
+
+def _note_in(outer: Any, found: LeftOut) -> None:
+    for element in (outer, *outer):
+        if element.tag in IN_BODIES_LEFT_OUT:
+            found.add(f"<{element.tag}>", element.get("name"))
+        elif element is outer:
+            _note_attributes(element, found)
+        else:
+            _note_in(element, found)
+
+
+def _note_attributes(element: Any, found: LeftOut) -> None:
+    words = WORDS.get(element.tag)
+    for key in element.attrib:
+        if words is not None and key in words.left_out:
+            found.add(f"{key} of <{element.tag}>", element.get("name"))
 
 
 class Defaults:

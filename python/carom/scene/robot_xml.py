@@ -56,6 +56,29 @@ def read_xml(path: Union[str, os.PathLike[str]], roots: tuple[str, ...], kind: s
     return element  # type: ignore[no-any-return]
 
 
+class LeftOut:
+    """What a description has and a scene has no part for, by its kind."""
+
+    _MOST_NAMES = 3  # that a sentence has
+
+    def __init__(self) -> None:
+        self._names: dict[str, list[str]] = {}
+
+    def add(self, kind: str, name: Optional[str] = None) -> None:
+        """One more of a kind; name: what it is called, or where it is."""
+        self._names.setdefault(kind, []).append(name or "")
+
+    def sentences(self) -> list[str]:
+        """One for each kind: how many, and the names of the first."""
+        found = []
+        for kind, names in self._names.items():
+            known = list(dict.fromkeys(name for name in names if name))
+            shown = ", ".join(known[: self._MOST_NAMES]) + (", ..." if len(known) > self._MOST_NAMES else "")
+            count = f" ({len(names)})" if len(names) > 1 else ""
+            found.append(f"{kind}{count}" + (f": {shown}" if shown else ""))
+        return found
+
+
 @contextlib.contextmanager
 def placed(element: Element) -> Iterator[None]:
     """Errors of what is made of an element get its line, unless they have one."""

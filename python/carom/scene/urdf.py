@@ -3,7 +3,7 @@
 A robot is planar if its joints turn about the normal of one plane or slide in it. Bodies get the angle 0
 where all joints are at 0; their points are then differences of points of the world. What a planar model
 cannot have is refused by name; what has no part here (visuals, transmissions, limits of effort and speed) is
-left out.
+left out, and Scene.left_out says so.
 """
 
 from __future__ import annotations
@@ -17,7 +17,14 @@ from .. import _core
 from .build import Scene
 from .errors import SceneError
 from .robot_xml import PLANES as PLANES
-from .robot_xml import Array, Body, Frame, Plane, given, placed, read_xml, rotations, world
+from .robot_xml import Array, Body, Frame, LeftOut, Plane, given, placed, read_xml, rotations, world
+
+_TAKEN = {
+    "robot": ("link", "joint"),
+    "link": ("inertial", "collision"),
+    "joint": ("parent", "child", "origin", "axis", "limit", "dynamics", "mimic"),
+}
+"""Elements in each kind of element that are read."""
 
 
 def _inner(frame: Frame, element: Any, what: str) -> Frame:
@@ -192,6 +199,25 @@ class _Reader:
             self.system.add(planar.Polygon(body=body.identity, vertices=points))
 
 
+def _left_out(robot: Any) -> list[str]:
+    """What a scene has no part for."""
+    found = LeftOut()
+    for outer in (robot, *robot.findall("link"), *robot.findall("joint")):
+        where = "" if outer is robot else f"{outer.tag} '{outer.get('name')}'"
+        for element in outer:
+            if element.tag not in _TAKEN[outer.tag]:
+                name = element.get("name")
+                found.add(f"<{element.tag}>", where or (f"'{name}'" if name else ""))
+        if outer.tag == "joint":
+            limit = outer.find("limit")
+            for key in ("effort", "velocity"):
+                if limit is not None and limit.get(key) is not None:
+                    found.add(f"limit of {key}", where)
+            if outer.get("type") == "continuous" and limit is not None and limit.get("lower") is not None:
+                found.add("limits of a continuous joint", where)
+    return found.sentences()
+
+
 def load_urdf(
     path: Union[str, os.PathLike[str]],
     plane: str = "xz",
@@ -218,4 +244,5 @@ def load_urdf(
             reader.read()
     except SceneError as error:
         raise SceneError(error.message, error.path, error.line, os.fspath(path)) from error
-    return Scene(reader.system)
+    reader.system.title = os.path.basename(os.fspath(path))
+    return Scene(reader.system, left_out=_left_out(robot))
