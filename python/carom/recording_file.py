@@ -67,6 +67,45 @@ def _name_length(model: dict[str, Any]) -> int:
     return 96 + 3 * max((len(name.encode()) for name in given), default=0)
 
 
+def _checksum(data: bytes) -> int:
+    """Checksum of HDF5's metadata: lookup3 of Bob Jenkins (public domain, burtleburtle.net/bob/c/lookup3.c), of a
+    length that is a multiple of 4 and none of 12.
+    """
+    words = struct.unpack(f"<{len(data) // 4}I", data)
+    a = b = c = (0xDEADBEEF + len(data)) & 0xFFFFFFFF
+
+    def turned(x: int, bits: int) -> int:
+        return (x << bits | x >> 32 - bits) & 0xFFFFFFFF
+
+    whole = len(words) // 3 * 3
+    for i in range(0, whole, 3):
+        a, b, c = a + words[i], b + words[i + 1], c + words[i + 2]
+        for bits in (4, 6, 8, 16, 19, 4):
+            a, c = (a - c & 0xFFFFFFFF) ^ turned(c & 0xFFFFFFFF, bits), c + b & 0xFFFFFFFF
+            a, b, c = b, c, a
+    rest = (*words[whole:], 0, 0)
+    a, b = a + rest[0] & 0xFFFFFFFF, b + rest[1] & 0xFFFFFFFF
+    for bits in (14, 11, 25, 16, 4, 14, 24):
+        c = (c ^ b) - turned(b, bits) & 0xFFFFFFFF
+        a, b, c = b, c, a
+    return b
+
+
+def _end_where_it_ends(path: Path) -> None:
+    """Corrects the end of a file that could not be written as far as it says: what is behind was not counted as
+    complete. Raises OSError.
+    """
+    with open(path, "r+b") as file:
+        start = file.read(48)
+        size = file.seek(0, os.SEEK_END)
+        # The superblock, as in _is_open(), ends with the checksum of what is before.
+        known = len(start) == 48 and start[8] == 3 and _checksum(start[:44]) == struct.unpack("<I", start[44:])[0]
+        if known and struct.unpack_from("<Q", start, 28)[0] > size:
+            start = start[:28] + struct.pack("<Q", size) + start[36:44]
+            file.seek(0)
+            file.write(start + struct.pack("<I", _checksum(start)))
+
+
 def _abandon(file: Any, sets: dict[str, Any]) -> None:
     """Closes a file that could not be written, and its data sets. HDF5 would write what is left when it closes
     them, and once more when the program ends, which then crashes: it writes to nowhere instead, and the file
@@ -78,8 +117,10 @@ def _abandon(file: Any, sets: dict[str, Any]) -> None:
             os.dup2(nowhere, file.id.get_vfd_handle(), inheritable=False)
         finally:
             os.close(nowhere)
+        path = Path(file.filename)
         sets.clear()
         file.close()
+        _end_where_it_ends(path)
     except _FAULTS:
         pass  # the fault that is to be told is the first
 
@@ -392,7 +433,8 @@ def _read(file: Any) -> Recording:
     arrays["ledger"] = file["ledger/rows"][:frames]
     for table, ends in (("contacts", "contact_ends"), ("events", "event_ends")):
         arrays[table] = file[f"{table}/rows"][: _count(file, ends, frames)]
-    arrays["names"] = [name.decode() for name in file["names"][()]]
+    count = max([int(arrays[table]["name"].max()) + 1 for table in _TABLES if len(arrays[table])], default=0)
+    arrays["names"] = [name.decode() for name in file["names"][:count]]
     model = json.loads(file["model"][()])
     moved = [int(serial) for serial in file.attrs["moved"]]
     bodies = len(model["bodies"])
