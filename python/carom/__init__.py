@@ -22,7 +22,8 @@ from ._signatures import install as _install
 from ._version import __version__ as __version__
 
 _install()
-globals().update(planar=_sys.modules["carom.planar"], spatial=_sys.modules["carom.spatial"])  # not those of _core
+# Not those of _core.
+globals().update(planar=_sys.modules["carom.planar"], spatial=_sys.modules["carom.spatial"])
 __all__ = [name for name in dir() if not name.startswith("_")]
 if not _typing.TYPE_CHECKING:  # a checker would believe that there is everything
 

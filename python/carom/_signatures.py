@@ -88,9 +88,12 @@ class _OfClass:
 
 def install() -> None:
     """Makes inspect.signature() know what the compiled part of the package takes."""
-    method, bound = _core.Simulation.step, _core.System().body
-    for kind, signature in ((type(_core.force_on), of_function), (type(method), of_function), (type(bound), of_bound)):
-        _core._set_in_type(kind, "__signature__", property(signature))
+    for compiled, signature in (
+        (_core.force_on, of_function),
+        (_core.Simulation.step, of_function),
+        (_core.System().body, of_bound),
+    ):
+        _core._set_in_type(type(compiled), "__signature__", property(signature))
     for module in (_core, _core.planar, _core.spatial):
         for value in vars(module).values():
             if isinstance(value, type) and isinstance(value, type(_core.System)):

@@ -66,8 +66,8 @@ class Recording:
     units        SI units by array
 
     The impulse of a contact is that of the step that ended at the sample. In the event-driven mode impacts
-    within the step have theirs (`impact` is 1), and contacts that last at the sample have their force then times
-    the length of the step, and their mode: stick or slip.
+    within the step have theirs (`impact` is 1), and contacts that last at the sample have their force then
+    times the length of the step, and their mode: stick or slip.
     """
 
     def __init__(

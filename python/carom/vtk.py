@@ -227,7 +227,7 @@ def _in_space(vectors: Array) -> Array:
 
 
 def write_vtk(recording: Recording, path: Union[str, os.PathLike[str]], every: int = 1) -> None:
-    """Writes a recording for ParaView: path, a file .pvd, and a folder of that name beside it. Makes the folders.
+    """Writes a recording for ParaView: path, a file .pvd, and a folder of that name beside it. Makes folders.
 
     every: only each so many samples are taken, and the last. Raises ModelError for a path that does not end
     in .pvd; FileError for one that cannot be written.

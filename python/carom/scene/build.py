@@ -28,8 +28,8 @@ Result = TypeVar("Result")
 
 @dataclasses.dataclass
 class Scene:
-    """What a scene file holds. mode and until [s] are None if it does not say how to run it. left_out: of a robot
-    description what the scene has no part for, a sentence each.
+    """What a scene file holds. mode and until [s] are None if it does not say how to run it. left_out: what a
+    robot description has and the scene has no part for, a sentence each.
     """
 
     system: _core.System
