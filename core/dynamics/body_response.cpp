@@ -73,17 +73,37 @@ void JointResponse::answer(Index, double* x, std::size_t columns, char* held) {
   }
 }
 
-bool LinearisedResponse::take_loads(Index, double* x) {
-  if (at_impact_ == nullptr) return false;
-  static_cast<void>(answer_with(*at_impact_, x));
-  velocity_.assign(x, x + velocities_.size());
-  step_->apply_mass(velocity_.data() - velocities_.begin, x - velocities_.begin);
+LinearisedResponse::LinearisedResponse(const Assembly& assembly,
+                                       std::span<const LinearisedComponent> components)
+    : assembly_(&assembly),
+      components_(components),
+      joints_answer_(
+          std::any_of(components.begin(), components.end(),
+                      [](const LinearisedComponent& component) { return component.at_impact != nullptr; })) {}
+
+const LinearisedComponent& LinearisedResponse::component_of(Index body) const {
+  const Index v = assembly_->layout()->bodies()[body].v;
+  const auto behind = std::upper_bound(
+      components_.begin(), components_.end(), v,
+      [](Index at, const LinearisedComponent& component) { return at < component.velocities.begin; });
+  return *(behind - 1);
+}
+
+bool LinearisedResponse::take_loads(Index body, double* x) {
+  if (!joints_answer_) return false;
+  const LinearisedComponent& component = component_of(body);
+  if (component.at_impact == nullptr) return true;  // impulses as they are
+  const Range v = component.velocities;
+  static_cast<void>(answer_with(*component.at_impact, x));
+  velocity_.assign(x, x + v.size());
+  component.step->apply_mass(velocity_.data() - v.begin, x - v.begin);
   return true;
 }
 
-void LinearisedResponse::answer(Index, double* x, std::size_t columns, char* held) {
+void LinearisedResponse::answer(Index body, double* x, std::size_t columns, char* held) {
+  const LinearisedComponent& component = component_of(body);
   std::fill_n(held, columns, char{0});
-  for (std::size_t j = 0; j < columns; ++j, x += velocities_.size()) step_->solve(x);
+  for (std::size_t j = 0; j < columns; ++j, x += component.velocities.size()) component.step->solve(x);
 }
 
 }  // namespace carom

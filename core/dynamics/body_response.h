@@ -11,6 +11,7 @@
 #include <carom/core/export.h>
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -70,21 +71,29 @@ private:
   JointConstraints* joints_;
 };
 
-/// A^-1 of a linearised step of one component, which couples all its bodies.
+/// The linearised step of one component.
+struct LinearisedComponent {
+  ImplicitSolver* step = nullptr;  ///< factored
+  Range velocities;                ///< of the component
+  /// Joints whose answer to an impulse acts together with it, factored; null: none.
+  JointConstraints* at_impact = nullptr;
+};
+
+/// A^-1 of the linearised steps of some components: the bodies of each answer together.
 class CAROM_API LinearisedResponse final : public BodyResponse {
 public:
-  /// All must outlive it. \param at_impact joints whose answer to an impulse acts together with it, factored;
-  /// null: none
-  LinearisedResponse(ImplicitSolver& step, Range velocities, JointConstraints* at_impact = nullptr)
-      : step_(&step), velocities_(velocities), at_impact_(at_impact) {}
-  [[nodiscard]] Range reach(Index) const override { return velocities_; }
+  /// All must outlive it. \param components ascending; impulses act on their bodies alone
+  LinearisedResponse(const Assembly& assembly, std::span<const LinearisedComponent> components);
+  [[nodiscard]] Range reach(Index body) const override { return component_of(body).velocities; }
   void answer(Index body, double* x, std::size_t columns, char* held) override;
   bool take_loads(Index body, double* x) override;
 
 private:
-  ImplicitSolver* step_;
-  Range velocities_;
-  JointConstraints* at_impact_;
+  [[nodiscard]] const LinearisedComponent& component_of(Index body) const;
+
+  const Assembly* assembly_;
+  std::span<const LinearisedComponent> components_;
+  bool joints_answer_;  // in one of them: then loads of all are those that act
   std::vector<double> velocity_;
 };
 

@@ -21,11 +21,20 @@ Iteration IterationMemory::first(Index component) const {
   return retry ? Iteration::fixed_point : entry->solved;
 }
 
+Iteration IterationMemory::first(std::span<const Index> components) const {
+  Iteration strongest = Iteration::fixed_point;
+  for (const Index component : components) strongest = std::max(strongest, first(component));
+  return strongest;
+}
+
 void IterationMemory::record(const IterationMemory& before, Index component, Iteration solved) {
   if (solved == Iteration::fixed_point) return;
   const Entry* const last = before.find(component);
   const int steps = last == nullptr ? 1 : last->steps + 1;
-  entries_.push_back({component, solved, steps == patience + retry_interval ? patience : steps});
+  const auto behind =
+      std::upper_bound(entries_.begin(), entries_.end(), component,
+                       [](Index wanted, const Entry& entry) { return wanted < entry.component; });
+  entries_.insert(behind, {component, solved, steps == patience + retry_interval ? patience : steps});
 }
 
 bool IterationMemory::append(const Entry& entry) {

@@ -8,6 +8,7 @@
 #include <carom/core/ids.h>
 #include <carom/integrators/run/time_stepping.h>
 
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -31,8 +32,10 @@ public:
 
   /// The iteration with which the next step of a component begins.
   [[nodiscard]] Iteration first(Index component) const;
+  /// The same of several components that contact joins: the strongest of them.
+  [[nodiscard]] Iteration first(std::span<const Index> components) const;
   /// Takes the end of a step of one component over into the memory after this step: `before` is the memory
-  /// before it. Components must come in their order; those that are left out are forgotten.
+  /// before it. Each component comes once, in any order; those that are left out are forgotten.
   void record(const IterationMemory& before, Index component, Iteration solved);
   /// Forgets all components.
   void clear() { entries_.clear(); }

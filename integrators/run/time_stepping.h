@@ -50,9 +50,9 @@ enum class Iteration : std::uint8_t {
   /// Allocates.
   linearly_implicit,
   /// The fixed-point iteration; within a step, for a component in which it fails, Anderson's, then the
-  /// linearly implicit one. After three such steps in a row its steps begin with the one that solved the
-  /// last, and every 32 steps with the fixed-point iteration again. StepReport::iteration is the one that
-  /// solved a step.
+  /// linearly implicit one; for several components that contact joins, the latter at once. After three such
+  /// steps in a row the steps of a component begin with the one that solved the last, and every 32 steps with
+  /// the fixed-point iteration again. StepReport::iteration is the one that solved a step.
   automatic
 };
 

@@ -53,8 +53,6 @@ public:
   /// Brings the constraints back to the start of the step. Contacts between which a body jams may press it,
   /// as they turn, by what is an error of the step; no impulses hold then, but along the rows at the start.
   void give_up(std::span<const StepIsland> islands);
-  /// Brings constraints that were found anew to the path again.
-  void restore(const StepIsland& island) const;
   /// Work of the impulses of a problem on what turning makes of the velocities along its rows: an error of
   /// the step [J]. Friction in joints is booked with what it does.
   [[nodiscard]] double work(const IslandProblem& problem) const;
@@ -68,6 +66,7 @@ private:
   };
   [[nodiscard]] bool may_be_followed(const Constraint& contact) const;
   void list_mechanisms(const StepIsland& island);
+  void restore(const StepIsland& island) const;
   [[nodiscard]] std::size_t find(const Constraint& contact) const;
   [[nodiscard]] bool turn(Turned& turned, const double* v0, const double* v1, const StepTrial& at) const;
   [[nodiscard]] bool has_converged(const StepTrial& trial, double residual);

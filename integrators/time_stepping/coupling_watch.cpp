@@ -1,5 +1,7 @@
 #include <carom/integrators/time_stepping/coupling_watch.h>
 
+#include <algorithm>
+
 namespace carom {
 
 namespace {
@@ -11,9 +13,14 @@ CouplingRating rate_at_start(const StepInput& in, Index component, StepTrial& tr
 
 }  // namespace
 
-bool leads_astray(Iteration iteration, const StepInput& in, Index component, StepTrial& trial) {
+bool leads_astray(Iteration iteration, const StepInput& in, std::span<const Index> components,
+                  StepTrial& trial) {
   constexpr double largest_rate = 20.0;  // sweeps contract below 1
-  return iteration == Iteration::anderson && rate_at_start(in, component, trial).rate > largest_rate;
+  if (iteration != Iteration::anderson) return false;
+  if (components.size() > 1) return true;
+  return std::any_of(components.begin(), components.end(), [&](Index component) {
+    return rate_at_start(in, component, trial).rate > largest_rate;
+  });
 }
 
 void CouplingWatch::rate(const StepInput& in, Index component, double contraction, StepTrial& trial,

@@ -10,15 +10,17 @@
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
+#include <span>
 #include <vector>
 
 namespace carom {
 
-/// True of Anderson's iteration where couplings of a component are so stiff that iterates wander farther than
-/// bodies are apart: it may find another solution of equations that are not linear (a spring turned end for
-/// end). \param trial rotations in it are worked with
-[[nodiscard]] CAROM_API bool leads_astray(Iteration iteration, const StepInput& in, Index component,
-                                          StepTrial& trial);
+/// True of Anderson's iteration where couplings of some components are so stiff that iterates wander farther
+/// than bodies are apart: it may find another solution of equations that are not linear (a spring turned end
+/// for end); and of several components that contact joins, whose answers jump, so that what it makes of the
+/// last few leads anywhere. \param trial rotations in it are worked with
+[[nodiscard]] CAROM_API bool leads_astray(Iteration iteration, const StepInput& in,
+                                          std::span<const Index> components, StepTrial& trial);
 
 /// Ratings of all components.
 class CAROM_API CouplingWatch {

@@ -63,10 +63,15 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
       demand_motion(island, in, *parts_);
       return moved ? LoadsKnown::total : made.known;
     }
-    for (const Index component : island.components) {
-      method_.improve(parts_->stages(in, component), parts_->schedule, judge);
-    }
+    improve(island, in, judge);
   }
+}
+
+/// The next guess at the loads.
+void IslandIteration::improve(const StepIsland& island, const StepInput& in, const FixedPointJudge& judge) {
+  const bool sweeps = method_.current() == Iteration::fixed_point;
+  if (!sweeps) return method_.improve(island.components, judge, parts_->trial);
+  for (const Index component : island.components) parts_->schedule.improve(parts_->stages(in, component));
 }
 
 /// Bodies that are hit within the step, as far as the iterate says. True if there are more than were known.
@@ -123,7 +128,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
               parts_->trial.end.z.begin() + z.begin);
   }
   JointContacts contacts = contacts_of(island);
-  method_.start(front);
+  method_.start(island.components);
   // Mechanisms, and what they touch, keep to the step: it ends where they are hit.
   if (parts_->located.on() && joints == nullptr && !joined && !method_.is_newton()) {
     for (const Index component : island.components) {
@@ -141,7 +146,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
     joints->start(in, parts_->rule, method_.current(), contacts, parts_->trial);
   }
   if (!method_.is_newton()) return;
-  demand(method_.newton().start(in, parts_->rule, front, joints, contacts.problem, parts_->trial), front, in);
+  demand(method_.newton().start(in, parts_->rule, newton_island(island), parts_->trial), island, in);
 }
 
 /// Sweeps around contacts alone, and again where loads jump there, or contacts return: the whole of the
@@ -189,7 +194,8 @@ IslandIteration::SweepsMade IslandIteration::sweep_streamed(const SweepStages& s
     const Verdict verdict = judge.judge_ahead(earlier.change, earlier.size);
     if (verdict == Verdict::failed) {
       parts_->errors(stages.in, stages.component)
-          .fail_contraction(judge, method_.current(), nullptr, parts_->contacts.problems());
+          .fail_contraction(judge, method_.current(),
+                            {{&stages.component, 1}, parts_->joints, parts_->contacts.problems()});
     }
     made.converged_one_early = verdict == Verdict::converged;
   }
@@ -208,22 +214,19 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
   SweepsMade made;
   made.known = alone && judge.sweeps() + 1 >= expected ? LoadsKnown::by_cause : LoadsKnown::total;
   JointContacts contacts = contacts_of(island);
+  // Joints that nothing touches or rubs are iterated with their reactions.
+  const bool untouched = joints != nullptr && contacts.problem == nullptr;
+  if (newton && !untouched) {
+    demand(method_.newton().step(in, parts_->rule, newton_island(island), parts_->trial), island, in);
+  }
   if (joined) {
     sweep_joined(island, in);
   } else if (joints != nullptr) {
-    if (newton && contacts.problem != nullptr) {
-      demand(method_.newton().step_with_joints(in, parts_->rule, front, *joints, contacts.problem,
-                                               contacts.chain, parts_->trial),
-             front, in);
-    }
-    sweep_joints(in, front, *joints, contacts);
+    sweep_joints(island, in, *joints, contacts);
   } else {
-    if (newton) {
-      demand(method_.newton().step(in, parts_->rule, front, contacts.problem, contacts.chain, parts_->trial),
-             front, in);
-    } else if (const IslandProblem* const failed = parts_->contacts.solve(in, parts_->rule, parts_->trial)) {
-      parts_->errors(in, front).fail_contact(*failed);
-    }
+    const IslandProblem* const failed =
+        newton ? nullptr : parts_->contacts.solve(in, parts_->rule, parts_->trial);
+    if (failed != nullptr) parts_->errors(in, front).fail_contact(*failed);
     for (const Index component : island.components) parts_->schedule.move(parts_->stages(in, component));
     parts_->trial.account.swept = true;
   }
@@ -240,18 +243,19 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
   return made;
 }
 
-void IslandIteration::sweep_joints(const StepInput& in, Index component, JointStage& joints,
+void IslandIteration::sweep_joints(const StepIsland& island, const StepInput& in, JointStage& joints,
                                    JointContacts& contacts) {
   if (method_.is_newton() && contacts.problem == nullptr) {
     return demand(method_.newton().sweep_untouched(in, parts_->rule, joints.iterate(), parts_->trial),
-                  component, in);
+                  island, in);
   }
   if (joints.sweep(in, parts_->rule, contacts, parts_->trial)) return;
-  parts_->errors(in, component).fail_contact(*contacts.problem);
+  parts_->errors(in, island.components.front()).fail_contact(*contacts.problem);
 }
 
 void IslandIteration::sweep_joined(const StepIsland& island, const StepInput& in) {
   IslandProblem& problem = *parts_->problem();
+  if (method_.is_newton()) parts_->joined.respond(problem);
   if (parts_->joined.sweep(in, parts_->rule, island, problem, parts_->contacts.chain(), parts_->trial))
     return;
   parts_->errors(in, island.components.front()).fail_contact(problem);
@@ -296,7 +300,7 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
   JointContacts contacts = contacts_of(island);
   for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
     if (joints != nullptr) {
-      sweep_joints(in, front, *joints, contacts);
+      sweep_joints(island, in, *joints, contacts);
     } else {
       sweep_joined(island, in);
     }
@@ -326,18 +330,23 @@ bool IslandIteration::is_streamed(const StepIsland& island) const {
 }
 
 /// Newton's method went on, or says why not.
-void IslandIteration::demand(NewtonIteration::Outcome outcome, Index component, const StepInput& in) {
-  if (outcome == NewtonIteration::Outcome::singular) parts_->errors(in, component).fail_linearisation();
-  if (outcome == NewtonIteration::Outcome::unsolved) {
-    parts_->errors(in, component).fail_contact(parts_->contacts.problems().front());
-  }
+void IslandIteration::demand(NewtonIteration::Outcome outcome, const StepIsland& island,
+                             const StepInput& in) {
+  if (outcome == NewtonIteration::Outcome::done) return;
+  const StepErrors errors = parts_->errors(in, island.components.front());
+  if (outcome == NewtonIteration::Outcome::singular) errors.fail_linearisation(island.components);
+  errors.fail_contact(parts_->contacts.problems().front());
+}
+
+NewtonIsland IslandIteration::newton_island(const StepIsland& island) {
+  return {island.components, parts_->joints, parts_->problem(), parts_->contacts.chain()};
 }
 
 void IslandIteration::fail_contraction(const StepIsland& island, const StepInput& in,
                                        const FixedPointJudge& judge) {
-  const Index component = island.components.front();
-  parts_->errors(in, component)
-      .fail_contraction(judge, method_.current(), parts_->joints.of(component), parts_->contacts.problems());
+  parts_->errors(in, island.components.front())
+      .fail_contraction(judge, method_.current(),
+                        {island.components, parts_->joints, parts_->contacts.problems()});
 }
 
 JointContacts IslandIteration::contacts_of(const StepIsland& island) {

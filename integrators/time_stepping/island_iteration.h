@@ -52,13 +52,15 @@ private:
   [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
   [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,
                                         const FixedPointJudge& judge);
-  void sweep_joints(const StepInput& in, Index component, JointStage& joints, JointContacts& contacts);
+  void sweep_joints(const StepIsland& island, const StepInput& in, JointStage& joints, JointContacts& contacts);
   void follow(const StepInput& in, Index component);
   void sweep_joined(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool converge_joints(const StepIsland& island, const StepInput& in);
   [[nodiscard]] JointStage* joints_of(const StepIsland& island) const;
   [[nodiscard]] bool is_streamed(const StepIsland& island) const;
-  void demand(NewtonIteration::Outcome outcome, Index component, const StepInput& in);
+  [[nodiscard]] NewtonIsland newton_island(const StepIsland& island);
+  void improve(const StepIsland& island, const StepInput& in, const FixedPointJudge& judge);
+  void demand(NewtonIteration::Outcome outcome, const StepIsland& island, const StepInput& in);
   [[noreturn]] void fail_contraction(const StepIsland& island, const StepInput& in,
                                      const FixedPointJudge& judge);
 

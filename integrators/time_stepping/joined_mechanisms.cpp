@@ -27,7 +27,7 @@ void JoinedMechanisms::start(const StepInput& in, const StepIsland& island, Isla
     joints_.push_back(&joints->answer().rows());
   }
   response_.bind(joints_);
-  problem.respond(response_);
+  respond(problem);
 }
 
 bool JoinedMechanisms::sweep(const StepInput& in, const StepRule& rule, const StepIsland& island,

@@ -29,6 +29,8 @@ public:
   [[nodiscard]] bool takes(const StepIsland& island) const;
   /// The first guess, and the matrix of the problem.
   void start(const StepInput& in, const StepIsland& island, IslandProblem& problem, StepTrial& trial);
+  /// Makes the matrix again, after another stage has made its own.
+  void respond(IslandProblem& problem) { problem.respond(response_); }
   /// One sweep. False if the problem is not solved.
   [[nodiscard]] bool sweep(const StepInput& in, const StepRule& rule, const StepIsland& island,
                            IslandProblem& problem, SolverChain& chain, StepTrial& trial);

@@ -1,5 +1,6 @@
 #include <carom/integrators/time_stepping/load_iteration.h>
 
+#include <algorithm>
 #include <span>
 
 namespace carom {
@@ -19,31 +20,46 @@ void LoadIteration::use(Iteration iteration) {
   for (std::size_t i = 0; i < size; ++i) weights_[i] *= lengths[i];
 }
 
-void LoadIteration::start(Index component) {
-  if (current_ == Iteration::anderson) anderson_.start(assembly_->components()[component].v.size());
+void LoadIteration::start(std::span<const Index> components) {
+  if (current_ != Iteration::anderson) return;
+  std::size_t size = 0;
+  for (const Index component : components) size += assembly_->components()[component].v.size();
+  anderson_.start(size);
 }
 
-void LoadIteration::improve(const SweepStages& stages, const SweepSchedule& schedule,
-                            const FixedPointJudge& judge) {
-  StepTrial& trial = stages.trial;
-  const Range v = assembly_->components()[stages.component].v;
-  const auto part = [&](std::vector<double>& numbers) {
+void LoadIteration::improve(std::span<const Index> components, const FixedPointJudge& judge,
+                            StepTrial& trial) {
+  if (current_ == Iteration::anderson) accelerate(components, trial);
+  if (is_newton()) newton_.note_contraction(judge.sweeps(), judge.contraction());
+}
+
+void LoadIteration::accelerate(std::span<const Index> components, StepTrial& trial) {
+  const auto part = [&](std::vector<double>& numbers, Range v) {
     return std::span<double>(numbers.data() + v.begin, v.size());
   };
-  switch (current_) {
-    case Iteration::anderson:
-      anderson_.next(part(trial.loads_guess), part(trial.loads_end.total), part(weights_));
-      return;
-    case Iteration::linearly_implicit:
-      return newton_.note_contraction(judge.sweeps(), judge.contraction());
-    case Iteration::fixed_point:
-    case Iteration::automatic:
-      break;
+  if (components.size() == 1) {
+    const Range v = assembly_->components()[components.front()].v;
+    return anderson_.next(part(trial.loads_guess, v), part(trial.loads_end.total, v), part(weights_, v));
   }
-  if (v.size() == trial.loads_guess.size()) {
-    trial.loads_guess.swap(trial.loads_end.total);
-  } else {
-    schedule.improve(stages);
+  gathered_.guess.clear();
+  gathered_.led_to.clear();
+  gathered_.weights.clear();
+  const auto append = [&](std::vector<double>& numbers, Range v, std::vector<double>& out) {
+    const std::span<const double> own = part(numbers, v);
+    out.insert(out.end(), own.begin(), own.end());
+  };
+  for (const Index component : components) {
+    const Range v = assembly_->components()[component].v;
+    append(trial.loads_guess, v, gathered_.guess);
+    append(trial.loads_end.total, v, gathered_.led_to);
+    append(weights_, v, gathered_.weights);
+  }
+  anderson_.next(gathered_.guess, gathered_.led_to, gathered_.weights);
+  const double* next = gathered_.guess.data();
+  for (const Index component : components) {
+    const Range v = assembly_->components()[component].v;
+    std::copy_n(next, v.size(), trial.loads_guess.data() + v.begin);
+    next += v.size();
   }
 }
 

@@ -10,8 +10,9 @@
 #include <carom/core/numerics/fixed_point.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/newton_iteration.h>
-#include <carom/integrators/time_stepping/sweep_schedule.h>
+#include <carom/integrators/time_stepping/step_trial.h>
 
+#include <span>
 #include <vector>
 
 namespace carom {
@@ -26,19 +27,27 @@ public:
   /// The one in use.
   [[nodiscard]] Iteration current() const { return current_; }
   [[nodiscard]] bool is_newton() const { return current_ == Iteration::linearly_implicit; }
-  /// Begins with a component.
-  void start(Index component);
-  /// Makes the next guess.
-  void improve(const SweepStages& stages, const SweepSchedule& schedule, const FixedPointJudge& judge);
+  /// Begins with an island.
+  void start(std::span<const Index> components);
+  /// Makes the next guess at the loads of an island of Anderson's iteration, or takes note of how Newton's
+  /// method contracts. The fixed-point iteration takes the loads themselves (SweepSchedule::improve()).
+  void improve(std::span<const Index> components, const FixedPointJudge& judge, StepTrial& trial);
   /// Newton's method.
   [[nodiscard]] NewtonIteration& newton() { return newton_; }
   [[nodiscard]] const NewtonIteration& newton() const { return newton_; }
 
 private:
+  // Loads of an island, whose components need not follow one another.
+  struct Gathered {
+    std::vector<double> guess, led_to, weights;
+  };
+  void accelerate(std::span<const Index> components, StepTrial& trial);
+
   const Assembly* assembly_;
   Iteration current_ = Iteration::fixed_point;
   AndersonAcceleration anderson_;
   std::vector<double> weights_;  // of loads: lengths by mass
+  Gathered gathered_;
   NewtonIteration newton_;
 };
 

@@ -1,6 +1,5 @@
 // Problem: guess the loads at the end of a step by the derivatives of the elements, contact included.
 
-#include <carom/core/dynamics/body_response.h>
 #include <carom/integrators/time_stepping/newton_iteration.h>
 
 #include <algorithm>
@@ -8,122 +7,184 @@
 
 namespace carom {
 
-NewtonIteration::Outcome NewtonIteration::start(const StepInput& in, const StepRule& rule, Index component,
-                                                JointStage* joints, IslandProblem* contact,
-                                                StepTrial& trial) {
-  const Range v = in.assembly.components()[component].v;
-  const Range q = in.assembly.components()[component].q;
+namespace {
+
+/// True if joints bind bodies of the island.
+bool has_joints(const NewtonIsland& island) {
+  return std::any_of(island.components.begin(), island.components.end(),
+                     [&](Index component) { return island.joints.of(component) != nullptr; });
+}
+
+}  // namespace
+
+NewtonIteration::Outcome NewtonIteration::start(const StepInput& in, const StepRule& rule,
+                                                const NewtonIsland& island, StepTrial& trial) {
   update_.resize(trial.end.v.size());
   scratch_.resize(trial.end.v.size());
-  if (joints == nullptr) {
-    std::copy(in.start.q.begin() + q.begin, in.start.q.begin() + q.end, trial.end.q.begin() + q.begin);
-    std::copy(in.start.v.begin() + v.begin, in.start.v.begin() + v.end, trial.end.v.begin() + v.begin);
-  }
-  Loads led_to = trial.loads_end.in_one();
-  evaluate_loads(in.assembly, component, in.start.view(), trial.at_start, led_to);
-  for (Index i = v.begin; i < v.end; ++i) {
-    trial.loads_guess[i] = rule.is_mean() ? 0.0 : -in.companion.loads.total[i];
-  }
-  if (contact != nullptr) contact->forget_impulses();
-  if (joints != nullptr) {
+  for (const Index component : island.components) {
+    const Range v = in.assembly.components()[component].v, q = in.assembly.components()[component].q;
+    JointStage* const joints = island.joints.of(component);
+    if (joints == nullptr) {
+      std::copy(in.start.q.begin() + q.begin, in.start.q.begin() + q.end, trial.end.q.begin() + q.begin);
+      std::copy(in.start.v.begin() + v.begin, in.start.v.begin() + v.end, trial.end.v.begin() + v.begin);
+    }
+    Loads led_to = trial.loads_end.in_one();
+    evaluate_loads(in.assembly, component, in.start.view(), trial.at_start, led_to);
+    for (Index i = v.begin; i < v.end; ++i) {
+      trial.loads_guess[i] = rule.is_mean() ? 0.0 : -in.companion.loads.total[i];
+    }
+    if (joints == nullptr) continue;
     joints->rows().place(in, trial);
     joints->rows().at_end().factor();
   }
-  if (!linearise(in, component, in.start.view(), trial.at_start, joints, contact)) return Outcome::singular;
-  matrix_.add_stiffness_times(rule.is_mean() ? 0.5 * in.step : in.step, in.start.v.data(),
-                              trial.loads_end.total.data());
+  if (island.contact != nullptr) island.contact->forget_impulses();
+  if (!linearise(in, island, in.start.view(), trial.at_start)) return Outcome::singular;
+  for (const LinearisedComponent& component : linearised_) {
+    component.step->add_stiffness_times(rule.is_mean() ? 0.5 * in.step : in.step, in.start.v.data(),
+                                        trial.loads_end.total.data());
+  }
   stale_ = false;
+  damping_.start();
   return Outcome::done;
 }
 
-bool NewtonIteration::linearise(const StepInput& in, Index component, const StateView& at,
-                                const Evaluation& evaluation, JointStage* joints, IslandProblem* contact) {
-  std::optional<ImplicitSolver::Border> border;
-  if (joints != nullptr) {
-    border.emplace(ImplicitSolver::Border{joints->rows().at_end(), joints->rows().at_midpoint()});
+bool NewtonIteration::linearise(const StepInput& in, const NewtonIsland& island, const StateView& at,
+                                const Evaluation& evaluation) {
+  if (matrices_.size() < island.components.size()) matrices_.resize(island.components.size());
+  linearised_.clear();
+  for (const Index component : island.components) {
+    ImplicitSolver& matrix = matrices_[linearised_.size()];
+    JointStage* const joints = island.joints.of(component);
+    std::optional<ImplicitSolver::Border> border;
+    if (joints != nullptr) {
+      border.emplace(ImplicitSolver::Border{joints->rows().at_end(), joints->rows().at_midpoint()});
+    }
+    const auto outcome = matrix.factor(in.assembly, component, at, evaluation, in.step,
+                                       border ? &*border : nullptr, island.contact != nullptr);
+    if (outcome == ImplicitSolver::Outcome::singular) return false;
+    const bool struck = joints != nullptr && joints->is_struck();
+    linearised_.push_back(
+        {&matrix, in.assembly.components()[component].v, struck ? &joints->answer().rows() : nullptr});
   }
-  const auto outcome = matrix_.factor(in.assembly, component, at, evaluation, in.step,
-                                      border ? &*border : nullptr, contact != nullptr);
-  if (outcome == ImplicitSolver::Outcome::singular) return false;
   // With joints W is made anew by every sweep.
-  if (contact == nullptr || joints != nullptr) return true;
-  LinearisedResponse response(matrix_, in.assembly.components()[component].v);
-  contact->respond(response);
+  if (island.contact == nullptr || has_joints(island)) return true;
+  LinearisedResponse response(in.assembly, linearised_);
+  island.contact->respond(response);
   return true;
 }
 
-NewtonIteration::Outcome NewtonIteration::step(const StepInput& in, const StepRule& rule, Index component,
-                                               IslandProblem* contact, SolverChain& chain, StepTrial& trial) {
-  const Range v = in.assembly.components()[component].v;
-  if (stale_ && !linearise(in, component, trial.end.view(), trial.at_end, nullptr, contact)) {
-    return Outcome::singular;
+/// At the iterate: mean loads change with the end of the step as loads halfway do with half of that.
+bool NewtonIteration::linearise_again(const StepInput& in, const StepRule& rule, const NewtonIsland& island,
+                                      StepTrial& trial) {
+  if (!rule.is_mean()) return linearise(in, island, trial.end.view(), trial.at_end);
+  for (const Index component : island.components) {
+    trial.place_midpoint(in, component);
+    evaluate_positions(in.assembly, component, trial.midpoint.view(), trial.at_midpoint);
   }
+  return linearise(in, island, trial.midpoint.view(), trial.at_midpoint);
+}
+
+NewtonIteration::Outcome NewtonIteration::step(const StepInput& in, const StepRule& rule,
+                                               const NewtonIsland& island, StepTrial& trial) {
+  if (has_joints(island)) return step_with_joints(in, rule, island, trial);
+  if (stale_ && !linearise_again(in, rule, island, trial)) return Outcome::singular;
+  IslandProblem* const contact = island.contact;
   const double weight = rule.impulse_weight(in.step);
-  for (Index i = v.begin; i < v.end; ++i) {
-    update_[i] = weight * (trial.loads_end.total[i] - trial.loads_guess[i]);
-  }
-  if (contact != nullptr) {
-    contact->map().add_loads(-1.0, update_.data());
-    matrix_.solve(update_.data() + v.begin);
-    for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial.end.v[i] + update_[i];
-    contact->set_free_velocity(scratch_.data());
-    std::vector<double>& change = trial.dv_impulses;
-    std::fill(change.begin() + v.begin, change.begin() + v.end, 0.0);
-    contact->map().add_loads(1.0 / weight, change.data());  // H^T P / w, of the iterate before
-    if (!contact->solve(chain).usable()) return Outcome::unsolved;
-    contact->map().add_velocities(update_.data());
-    contact->map().add_loads(-1.0 / weight, change.data());
-    for (Index i = v.begin; i < v.end; ++i) {
-      trial.loads_guess[i] += change[i];
-      change[i] = 0.0;
+  const auto for_velocities = [&](auto&& f) {
+    for (const LinearisedComponent& component : linearised_) {
+      for (Index i = component.velocities.begin; i < component.velocities.end; ++i) f(i);
     }
+  };
+  for_velocities([&](Index i) { update_[i] = weight * (trial.loads_end.total[i] - trial.loads_guess[i]); });
+  if (contact != nullptr) contact->map().add_loads(-1.0, update_.data());
+  for (const LinearisedComponent& component : linearised_) {
+    component.step->solve(update_.data() + component.velocities.begin);
+  }
+  damping_.keep_impulses(contact);
+  if (contact != nullptr) {
+    for_velocities([&](Index i) { scratch_[i] = trial.end.v[i] + update_[i]; });
+    contact->set_free_velocity(scratch_.data());
+    for_velocities([&](Index i) { trial.dv_impulses[i] = 0.0; });
+    contact->map().add_loads(1.0, trial.dv_impulses.data());  // H^T P, of the iterate before
+    if (!contact->solve(island.chain).usable()) return Outcome::unsolved;
+    contact->map().add_velocities(update_.data());
+    contact->map().add_loads(-1.0, trial.dv_impulses.data());
+  }
+  for (const LinearisedComponent& component : linearised_) {
+    component.step->apply_mass(update_.data(), scratch_.data());
+  }
+  for_velocities([&](Index i) {
+    if (contact != nullptr) scratch_[i] += trial.dv_impulses[i];
+    scratch_[i] = trial.loads_guess[i] + scratch_[i] / weight;
+  });
+  damping_.apply(in.assembly, island.components, change(in, island.components, trial), scratch_, update_,
+                 contact, trial);
+  if (contact != nullptr) {
+    for_velocities([&](Index i) { trial.dv_impulses[i] = 0.0; });
     MassResponse masses(in.assembly);
     by_masses_.build(contact->directions(), masses);
-    by_masses_.add_response(contact->impulses(), change.data());
-  } else {
-    matrix_.solve(update_.data() + v.begin);
+    by_masses_.add_response(contact->impulses(), trial.dv_impulses.data());
   }
-  matrix_.apply_mass(update_.data(), scratch_.data());
-  for (Index i = v.begin; i < v.end; ++i) trial.loads_guess[i] += scratch_[i] / weight;
   return Outcome::done;
 }
 
-NewtonIteration::Outcome NewtonIteration::step_with_joints(const StepInput& in, const StepRule& rule,
-                                                           Index component, JointStage& joints,
-                                                           IslandProblem* contact, SolverChain& chain,
-                                                           StepTrial& trial) {
-  const Range v = in.assembly.components()[component].v;
-  joints.rows().place(in, trial);
-  // Always anew: with rows that differ from those of the sweep, even by the turn of one sweep, stiff
-  // couplings would be loaded across them.
-  if (!linearise(in, component, trial.end.view(), trial.at_end, &joints, contact)) return Outcome::singular;
-  const double weight = rule.impulse_weight(in.step);
-  for (Index i = v.begin; i < v.end; ++i) {
-    update_[i] = weight * (trial.loads_end.total[i] - trial.loads_guess[i]);
-  }
-  JointConstraints& end = joints.rows().at_end();
+/// Correction d of a component without contact, from w (g - x).
+void NewtonIteration::solve(const StepTrial& trial, JointStage* joints,
+                            const LinearisedComponent& component) {
+  double* const update = update_.data() + component.velocities.begin;
+  if (joints == nullptr) return component.step->solve(update);
+  JointConstraints& end = joints->rows().at_end();
   residuals_.resize(end.size());
-  if (joints.rows().is_mean()) {
+  if (joints->rows().is_mean()) {
     std::fill(residuals_.begin(), residuals_.end(), 0.0);  // the sweep has met the positions
   } else {
     end.residuals(JointLevel::velocity, trial.end.v.data(), residuals_.data());
   }
-  matrix_.solve(update_.data() + v.begin, residuals_.data());
-  if (contact != nullptr) {
+  component.step->solve(update, residuals_.data());
+}
+
+NewtonIteration::Outcome NewtonIteration::step_with_joints(const StepInput& in, const StepRule& rule,
+                                                           const NewtonIsland& island, StepTrial& trial) {
+  for (const Index component : island.components) {
+    JointStage* const joints = island.joints.of(component);
+    if (joints != nullptr) joints->rows().place(in, trial);
+  }
+  // Always anew: with rows that differ from those of the sweep, even by the turn of one sweep, stiff
+  // couplings would be loaded across them.
+  if (!linearise_again(in, rule, island, trial)) return Outcome::singular;
+  IslandProblem* const contact = island.contact;
+  const double weight = rule.impulse_weight(in.step);
+  for (std::size_t c = 0; c < linearised_.size(); ++c) {
+    const Range v = linearised_[c].velocities;
+    JointStage* const joints = island.joints.of(island.components[c]);
+    for (Index i = v.begin; i < v.end; ++i) {
+      update_[i] = weight * (trial.loads_end.total[i] - trial.loads_guess[i]);
+    }
+    solve(trial, joints, linearised_[c]);
     for (Index i = v.begin; i < v.end; ++i) scratch_[i] = trial.end.v[i] + update_[i];
-    LinearisedResponse response(matrix_, v, joints.is_struck() ? &joints.answer().rows() : nullptr);
+    if (contact != nullptr && joints != nullptr && joints->is_struck()) {
+      joints->allow_answered(scratch_.data());
+    }
+  }
+  damping_.keep_impulses(contact);
+  if (contact != nullptr) {
+    LinearisedResponse response(in.assembly, linearised_);
     contact->respond(response);
-    if (joints.is_struck()) joints.allow_answered(scratch_.data());
     contact->set_velocity(scratch_.data());
     contact->map().add_velocities(update_.data(), -1.0);
-    if (!contact->solve(chain).usable()) return Outcome::unsolved;
+    if (!contact->solve(island.chain).usable()) return Outcome::unsolved;
     contact->map().add_velocities(update_.data());
   }
-  matrix_.apply_mass(update_.data(), scratch_.data());
-  matrix_.subtract_matrix(update_.data(), scratch_.data());
-  for (Index i = v.begin; i < v.end; ++i) {
-    trial.loads_guess[i] = trial.loads_end.total[i] + scratch_[i] / weight;
+  for (const LinearisedComponent& component : linearised_) {
+    component.step->apply_mass(update_.data(), scratch_.data());
+    component.step->subtract_matrix(update_.data(), scratch_.data());
+    const Range v = component.velocities;
+    for (Index i = v.begin; i < v.end; ++i) {
+      scratch_[i] = trial.loads_end.total[i] + scratch_[i] / weight;
+    }
   }
+  damping_.apply(in.assembly, island.components, change(in, island.components, trial), scratch_, update_,
+                 contact, trial);
   return Outcome::done;
 }
 
@@ -162,8 +223,9 @@ NewtonIteration::Outcome NewtonIteration::sweep_untouched(const StepInput& in, c
   }
   if (!correct_untouched(in, rule, joints, trial)) return Outcome::singular;
   const double weight = rule.impulse_weight(in.step);
-  matrix_.apply_mass(update_.data(), scratch_.data());
-  matrix_.subtract_matrix(update_.data(), scratch_.data());
+  const ImplicitSolver& matrix = matrices_.front();
+  matrix.apply_mass(update_.data(), scratch_.data());
+  matrix.subtract_matrix(update_.data(), scratch_.data());
   for (Index i = v.begin; i < v.end; ++i) {
     trial.loads_guess[i] = trial.loads_end.total[i] + scratch_[i] / weight;
   }
@@ -183,8 +245,9 @@ bool NewtonIteration::correct_untouched(const StepInput& in, const StepRule& rul
   JointConstraints& end = joints.rows.at_end();
   const ImplicitSolver::Border border{end, joints.rows.at_midpoint(), turn_.of_reactions(),
                                       turn_.of_conditions()};
+  ImplicitSolver& matrix = matrices_.front();
   const auto outcome =
-      matrix_.factor(in.assembly, joints.component, trial.end.view(), trial.at_end, in.step, &border);
+      matrix.factor(in.assembly, joints.component, trial.end.view(), trial.at_end, in.step, &border);
   if (outcome == ImplicitSolver::Outcome::singular) return false;
   const double weight = rule.impulse_weight(in.step), half = 0.5 * in.step;
   joints.find_free_velocities(in, rule, trial);
@@ -192,7 +255,7 @@ bool NewtonIteration::correct_untouched(const StepInput& in, const StepRule& rul
   for (Index i = v.begin; i < v.end; ++i) {
     scratch_[i] = trial.free[i] + joints.arrays->dv_joints[i] - trial.end.v[i];
   }
-  matrix_.apply_mass(scratch_.data(), update_.data());
+  matrix.apply_mass(scratch_.data(), update_.data());
   for (Index i = v.begin; i < v.end; ++i) {
     update_[i] += weight * (trial.loads_end.total[i] - trial.loads_guess[i]);
   }
@@ -207,9 +270,14 @@ bool NewtonIteration::correct_untouched(const StepInput& in, const StepRule& rul
     end.residuals(JointLevel::velocity, trial.end.v.data(), residuals_.data());
   }
   for (const MatrixNumber& of : turn_.of_conditions()) residuals_[of.row] += of.number * ahead_[of.column];
-  matrix_.solve(update_.data() + v.begin, residuals_.data(), multipliers_.data());
+  matrix.solve(update_.data() + v.begin, residuals_.data(), multipliers_.data());
   for (std::size_t row = 0; row < end.size(); ++row) joints.impulse[row] += multipliers_[row];
   return true;
+SweepChange NewtonIteration::change(const StepInput& in, std::span<const Index> components,
+                                    const StepTrial& trial) const {
+  SweepChange largest;
+  for (const Index component : components) largest.take(change(in, component, trial));
+  return largest;
 }
 
 SweepChange NewtonIteration::change(const StepInput& in, Index component, const StepTrial& trial) const {

@@ -307,12 +307,4 @@ void StepConstraints::merge(const StepInput& in, std::span<const BodyTouch> touc
   add_single_before(none);
 }
 
-void StepConstraints::restore(const StepInput& in, const StepIsland& island, const StepTrial& trial) {
-  again_.clear();
-  const Index component = island.components.front();
-  find_in(in, {component, component + 1}, trial, again_);
-  // No iteration changes the contacts of two bodies, which come first.
-  std::copy(again_.rbegin(), again_.rend(), island.constraints.rbegin());
-}
-
 }  // namespace carom

@@ -14,6 +14,7 @@
 #include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -74,8 +75,12 @@ public:
   /// Finds the contacts of some components, likewise. Valid until the next call.
   [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
                                                 const StepTrial& trial);
-  /// Finds the constraints of an island of one component as they were at the start, for another iteration.
-  void restore(const StepInput& in, const StepIsland& island, const StepTrial& trial);
+  /// Takes the constraints of an island down before its first iteration, which changes them.
+  void keep(const StepIsland& island) { kept_.assign(island.constraints.begin(), island.constraints.end()); }
+  /// Brings those of the island that was kept last back, for another iteration.
+  void restore(const StepIsland& island) const {
+    std::copy(kept_.begin(), kept_.end(), island.constraints.begin());
+  }
 
 private:
   void remember(const StepInput& in, double last_step);
@@ -118,7 +123,7 @@ private:
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   BodyContactSearch search_;
-  std::vector<Constraint> constraints_, again_, with_rolling_;
+  std::vector<Constraint> constraints_, kept_, with_rolling_;
   std::vector<Constraint> single_;   // those that join no components, or of a part of a batch
   KeptList<Constraint> plain_;       // of a part of a batch, where all are plain
   std::vector<JoinedNodes> joined_;  // components of all constraints, before they are written

@@ -1,8 +1,6 @@
 // Problem: say what went wrong in a step, with names, and what would help.
 
 #include <carom/contact/pressed_bodies.h>
-#include <carom/core/dynamics/coupling_rating.h>
-#include <carom/core/dynamics/light_bodies.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/core/listed.h>
 #include <carom/core/run_error.h>
@@ -164,67 +162,6 @@ void StepErrors::find_cause(bool implicit) const {
   demand_finite_loads(at_end);
 }
 
-void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iteration, const JointStage* joints,
-                                  std::span<const IslandProblem> problems) const {
-  // The bound of the rating is pessimistic by itself; the rest is room for forces that stiffen on the way.
-  constexpr double caution = 0.9;
-  std::vector<std::string> jumping;
-  for (const IslandProblem& problem : problems) {
-    if (!problem.changed_modes()) continue;
-    for (const Constraint& contact : problem.constraints()) jumping.push_back(detector_.name(contact.key));
-  }
-  const bool implicit = iteration == Iteration::linearly_implicit;
-  const bool automatic = options_.iteration == Iteration::automatic;
-  if (!std::isfinite(judge.change())) find_cause(implicit);
-
-  SolverFailure failure = this->failure();
-  failure.residual = judge.change();
-  evaluate_positions(in_.assembly, component_, in_.start.view(), trial_.at_end);
-  const CouplingRating rating =
-      rate_couplings(in_.assembly, component_, in_.start.view(), trial_.at_end, in_.step);
-  std::string message = "the " + std::string(to_string(iteration)) + " iteration does not contract after " +
-                        std::to_string(judge.sweeps()) + " sweeps (last change " + to_text(judge.change()) +
-                        " m)";
-  if (automatic) message += ", nor do the Anderson and the linearly implicit iteration";
-  if (rating.worst.valid()) {
-    failure.parts.push_back(system().name(rating.worst));
-    failure.suggested_step = std::min(caution * rating.contracting_step, 0.5 * in_.step);
-    message += "; limited most by " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
-  }
-  if (joints != nullptr) {
-    double violation = 0.0;
-    const JointId joint = joints->worst_joint(violation);
-    if (joint.valid()) {
-      failure.parts.push_back(system().name(joint));
-      message += "; of the joints " + failure.parts.back() + " is violated most, by " + to_text(violation);
-    }
-  }
-  if (rating.component_rate >= 1.0) {
-    message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
-    if (!implicit && !automatic) message += ", as would the linearly implicit iteration";
-  } else {
-    // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
-    message += "; by their derivatives at its start the force elements contract (rate " +
-               to_text(rating.component_rate) + " together), so a force jumps or stiffens";
-    if (joints != nullptr) {
-      message += ", or the joints turn far within the step" + tell_turn(failure) +
-                 " or are near a singular position";
-    }
-    if (!jumping.empty()) message += ", or contact does, which changes between modes: " + listed(jumping);
-    failure.parts.insert(failure.parts.end(), jumping.begin(), jumping.end());
-  }
-  if (joints != nullptr) {
-    const std::string light = light_bodies(in_.assembly, component_, failure.parts);
-    message += light;
-    if (!light.empty() && options_.force_rule == ForceRule::trapezoidal) {
-      message +=
-          " (allowed: masses nearer to each other, or force_rule energy_momentum, under which bodies "
-          "that swing fast keep their energy)";
-    }
-  }
-  fail(message, failure);
-}
-
 void StepErrors::fail_contact(const IslandProblem& problem) const {
   SolverFailure failure = failure_of(problem);
   const auto b = problem.problem().vector();
@@ -289,21 +226,6 @@ void StepErrors::fail_internal(ElementId element) const {
   SolverFailure failure = this->failure();
   failure.parts.push_back(system().name(element));
   fail("the internal variables of " + failure.parts.front() + " cannot be advanced", failure);
-}
-
-void StepErrors::fail_linearisation() const {
-  evaluate_positions(in_.assembly, component_, in_.start.view(), trial_.at_end);
-  const CouplingRating rating =
-      rate_couplings(in_.assembly, component_, in_.start.view(), trial_.at_end, in_.step);
-  demand_finite_loads(in_.start.view());
-  SolverFailure failure = this->failure();
-  failure.suggested_step = 0.5 * in_.step;
-  std::string message = "the matrix of the linearly implicit iteration is singular";
-  if (rating.worst.valid()) {
-    failure.parts.push_back(system().name(rating.worst));
-    message += "; stiffest is " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
-  }
-  fail(message, failure);
 }
 
 void StepErrors::fail_projection(const Constraint& left) const {

@@ -6,6 +6,7 @@
 
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
+#include <carom/core/dynamics/coupling_rating.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/fixed_point.h>
 #include <carom/core/run_error.h>
@@ -27,7 +28,14 @@ CAROM_API void check_options(const TimeStepping& options);
 /// The error with the name of a file of its contact problem, if it has one and a directory is given.
 [[nodiscard]] CAROM_API RunError with_file(const RunError& error, const TimeStepping& options);
 
-/// Says why a step of one component failed.
+/// The island whose iteration fails.
+struct FailedIsland {
+  std::span<const Index> components;
+  const JointStages& joints;                ///< of all components of the model
+  std::span<const IslandProblem> problems;  ///< of its contacts
+};
+
+/// Says why a step of one component failed, or of an island that begins with it.
 class CAROM_API StepErrors {
 public:
   /// \param trial as the step left it; rotations in it are worked with
@@ -36,9 +44,8 @@ public:
       : in_(in), component_(component), detector_(detector), options_(options), trial_(trial) {}
 
   /// The iteration does not contract.
-  /// \param joints of the component; null: none \param problems of its contacts
   [[noreturn]] void fail_contraction(const FixedPointJudge& judge, Iteration iteration,
-                                     const JointStage* joints, std::span<const IslandProblem> problems) const;
+                                     const FailedIsland& island) const;
   /// A joint stays open. \param gap by how much
   [[noreturn]] void fail_open(JointId joint, double gap) const;
   /// The step has gained energy that nothing explains [J].
@@ -55,8 +62,8 @@ public:
   [[noreturn]] void fail_account(Range components) const;
   /// The internal variables of an element cannot be advanced.
   [[noreturn]] void fail_internal(ElementId element) const;
-  /// The matrix of Newton's method is singular.
-  [[noreturn]] void fail_linearisation() const;
+  /// A matrix of Newton's method is singular, of some components.
+  [[noreturn]] void fail_linearisation(std::span<const Index> components) const;
   /// A gap cannot be opened.
   [[noreturn]] void fail_projection(const Constraint& left) const;
   /// Impacts at the start of the step that cannot be resolved. \param what why
@@ -66,6 +73,10 @@ public:
 
 private:
   [[nodiscard]] std::string tell_turn(SolverFailure& failure) const;
+  [[nodiscard]] std::string tell_joints(const FailedIsland& island, SolverFailure& failure) const;
+  [[nodiscard]] std::string tell_jumps(const FailedIsland& island, SolverFailure& failure) const;
+  [[nodiscard]] std::string tell_light_bodies(const FailedIsland& island, SolverFailure& failure) const;
+  [[nodiscard]] CouplingRating rate(std::span<const Index> components) const;
   void demand_finite_loads(const StateView& at) const;
   void find_cause(bool implicit) const;
   [[noreturn]] void fail_account() const;

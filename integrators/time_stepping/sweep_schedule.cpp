@@ -82,6 +82,10 @@ void SweepSchedule::move(const SweepStages& stages) const {
 }
 
 void SweepSchedule::improve(const SweepStages& stages) const {
+  StepTrial& trial = stages.trial;
+  if (assembly_->components()[stages.component].v.size() == trial.loads_guess.size()) {
+    return trial.loads_guess.swap(trial.loads_end.total);
+  }
   for_blocks(stages, [&](const Block& block, Index) { stages.improve(block); });
 }
 

@@ -170,21 +170,19 @@ void TimeStepper::prepare(const StepInput& in) {
 }
 
 void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
-  // Islands of several components are swept, whatever the iteration.
-  const bool swept = island.components.size() > 1;
   const bool automatic = parts_.options.iteration == Iteration::automatic;
   StepReport& report = balance_.report();
   if (parts_.has_constant_loads(island)) {
     advance_under_constant_loads(island, in);
     report.sweeps = std::max(report.sweeps, 1);
-    if (!swept && !automatic) report.iteration = std::max(report.iteration, parts_.options.iteration);
+    if (!automatic) report.iteration = std::max(report.iteration, parts_.options.iteration);
     return;
   }
   FixedPointJudge judge(parts_.options.tolerance, parts_.options.max_sweeps);
-  if (automatic && !swept) {
+  if (automatic) {
     iterate_automatically(island, in, judge);
   } else {
-    iteration_.use(swept ? Iteration::fixed_point : parts_.options.iteration);
+    iteration_.use(parts_.options.iteration);
     book(island, in, iteration_.solve(island, in, judge));
   }
   for (const Index component : island.components) {
@@ -196,23 +194,18 @@ void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
   report.contraction = std::max(report.contraction, judge.contraction());
 }
 
-/// One iteration after the other over one component, each stronger than the one before; behind the last the
-/// first is as good as another. The error of the fixed-point iteration says most.
+/// One iteration after the other over an island, each stronger than the one before; behind the last the first
+/// is as good as another. The error of the fixed-point iteration says most.
 void TimeStepper::iterate_automatically(const StepIsland& island, const StepInput& in,
                                         FixedPointJudge& judge) {
-  const Index component = island.components.front();
-  const auto first = static_cast<std::size_t>(in.companion.iterations.first(component));
+  const auto first = static_cast<std::size_t>(in.companion.iterations.first(island.components));
+  parts_.constraints.keep(island);
   std::optional<RunError> failed;
   for (std::size_t tried = 0; tried < iteration_count; ++tried) {
     const auto iteration = static_cast<Iteration>((first + tried) % iteration_count);
-    if (tried == 1 && leads_astray(iteration, in, component, parts_.trial)) continue;
+    if (tried > 0 && leads_astray(iteration, in, island.components, parts_.trial)) continue;
     iteration_.use(iteration);
-    if (tried > 0) {
-      parts_.constraints.restore(in, island, parts_.trial);
-      if (impacts_ != nullptr) StepImpacts::remove_restitution({&island, 1});
-      projection_.lower_rebounds(in, {&island, 1});
-      if (turning_ != nullptr) turning_->restore(island);
-    }
+    if (tried > 0) parts_.constraints.restore(island);
     judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);
     std::optional<LoadsKnown> known;
     try {
@@ -222,7 +215,10 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
       if (!failed || iteration == Iteration::fixed_point) failed = error;
     }
     if (known) {
-      memory_.iterations.record(in.companion.iterations, component, iteration);
+      for (const Index component : island.components) {
+        if (parts_.schedule.coupling(component) == CouplingClass::constant_loads) continue;
+        memory_.iterations.record(in.companion.iterations, component, iteration);
+      }
       balance_.report().fallbacks += static_cast<int>(tried);
       return book(island, in, *known);
     }

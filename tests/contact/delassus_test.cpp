@@ -46,9 +46,19 @@ System bodies(bool jointed) {
   return system;
 }
 
+/// Five bodies, of which springs couple 0 and 2, 3 and 4.
+System two_pairs() {
+  System system = bodies(false);
+  const std::vector<BodyId> all = system.bodies();
+  system.add(SpringDamper{.from = all[0], .to = {all[2], {0.1, 0.2}}, .stiffness = 3e3, .damping = 20.0});
+  system.add(SpringDamper{.from = all[3], .to = {all[4], {0.2, -0.1}}, .stiffness = 4e3});
+  return system;
+}
+
 class Bodies : public testing::Test {
 protected:
-  explicit Bodies(bool jointed) : assembly_(bodies(jointed)), state_(assembly_.initial_state()) {
+  explicit Bodies(bool jointed) : Bodies(bodies(jointed)) {}
+  explicit Bodies(const System& system) : assembly_(system), state_(assembly_.initial_state()) {
     evaluation_ = make_evaluation(assembly_);
     for (Index c = 0; c < assembly_.components().size(); ++c) {
       evaluate_positions(assembly_, c, state_.view(), evaluation_);
@@ -130,6 +140,11 @@ protected:
   DelassusOfAMechanism() : Bodies(true) {}
 };
 
+class DelassusOfComponents : public Bodies {
+protected:
+  DelassusOfComponents() : Bodies(two_pairs()) {}
+};
+
 // Sums of up to nine products: rounding.
 constexpr double rounding = 1e-14;
 
@@ -209,7 +224,29 @@ TEST_F(DelassusOfAMechanism, OfALinearisedStep) {
             ImplicitSolver::Outcome::definite);
   MatrixXd inverse = MatrixXd::Identity(size(), size());
   for (Eigen::Index column = 0; column < size(); ++column) step.solve(inverse.col(column).data());
-  LinearisedResponse response(step, assembly_.components()[0].v);
+  const LinearisedComponent component{&step, assembly_.components()[0].v};
+  LinearisedResponse response(assembly_, {&component, 1});
+  expect_product(response, inverse, 1e-13);
+}
+
+TEST_F(DelassusOfComponents, OfTheirLinearisedSteps) {
+  const auto count = static_cast<Index>(assembly_.components().size());
+  ASSERT_EQ(count, 3u);
+  std::vector<ImplicitSolver> steps(count);
+  std::vector<LinearisedComponent> components;
+  MatrixXd inverse = MatrixXd::Zero(size(), size());
+  for (Index c = 0; c < count; ++c) {
+    ASSERT_EQ(steps[c].factor(assembly_, c, state_.view(), evaluation_, 0.01, nullptr),
+              ImplicitSolver::Outcome::definite);
+    const Range v = assembly_.components()[c].v;
+    components.push_back({&steps[c], v});
+    for (Index i = v.begin; i < v.end; ++i) {
+      VectorXd column = VectorXd::Unit(v.size(), i - v.begin);
+      steps[c].solve(column.data());
+      inverse.block(v.begin, i, v.size(), 1) = column;
+    }
+  }
+  LinearisedResponse response(assembly_, components);
   expect_product(response, inverse, 1e-13);
 }
 

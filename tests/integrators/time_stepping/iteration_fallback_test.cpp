@@ -78,6 +78,17 @@ TEST(IterationMemory, ComesBackToTheFixedPointAtItsInterval) {
   EXPECT_TRUE(memory.entries().empty());
 }
 
+TEST(IterationMemory, ComponentsOfAnIslandComeInAnyOrder) {
+  IterationMemory before, memory;
+  for (const Index component : {4u, 9u, 1u, 6u}) {
+    memory.record(before, component, component == 6u ? Iteration::fixed_point : Iteration::linearly_implicit);
+  }
+  ASSERT_EQ(memory.entries().size(), 3u);
+  EXPECT_EQ(memory.entries()[0].component, 1u);
+  EXPECT_EQ(memory.entries()[1].component, 4u);
+  EXPECT_EQ(memory.entries()[2].component, 9u);
+}
+
 TEST(IterationFallback, NothingChangesWhereTheFixedPointConverges) {
   const TimeStepping named{.step = 1e-3, .iteration = Iteration::fixed_point};
   Simulation plain(pair(5e4), named), automatic(pair(5e4), TimeStepping{.step = 1e-3});
