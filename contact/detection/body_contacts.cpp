@@ -207,16 +207,14 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
   const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
   const auto add_if_any = [&](const BodyTouch& touch) {
     const std::size_t before = memory.touching.size();
-    if (touch.gap.gap <= query.margin) {
-      memory.touching.push_back(touch);
-    } else if (query.lasting != nullptr && query.lasting->contains(key_of(a, b, touch.gap))) {
+    if (touch.gap.gap <= query.margin) memory.touching.push_back(touch);
+    if (touch.gap.gap > query.margin && query.lasting != nullptr &&
+        query.lasting->contains(key_of(a, b, touch.gap)))
       add_lasting({i, j, touch.gap, touch.gap.gap / query.lasting->step()}, query, memory);
-    }
     return memory.touching.size() > before;
   };
   if (of_a.size() == 1 && of_b.size() == 1 && margin == any_gap) {
-    add_if_any({i, j, gap_of_vertices(of_a, 0, of_b, 0), 0.0});
-    return;
+    return static_cast<void>(add_if_any({i, j, gap_of_vertices(of_a, 0, of_b, 0), 0.0}));
   }
   std::array<GapPoint, 2> found;
   const int count = find_gaps(of_a, of_b, margin, found);

@@ -173,10 +173,10 @@ std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, In
   const LastingContacts* const lasting = search.query.lasting;
   meeting.lasts = lasting != nullptr && lasting->contains({a.vertex(i), b.surface()}) &&
                   lasting->contains({a.surface(), b.vertex(j)});
-  const Vec<2> place = search.frame.outside(meeting.a.at);
-  meeting.velocity = search.frame.turned_back(
-      Vec<2>(search.of_body.velocity_at(Vec<2>(place - search.of_body.centre)) -
-             search.frame.velocity_at(Vec<2>(search.frame.outside(meeting.b.at) - search.frame.centre))));
+  const PlaneFrame &body = search.of_body, &frame = search.frame;
+  const Vec<2> at_a = frame.outside(meeting.a.at), at_b = frame.outside(meeting.b.at);
+  meeting.velocity = frame.turned_back(
+      Vec<2>(body.velocity_at(Vec<2>(at_a - body.centre)) - frame.velocity_at(Vec<2>(at_b - frame.centre))));
   return second_contact(first, meeting);
 }
 
@@ -201,11 +201,7 @@ bool PieceContacts::add(const Search& search, Index on_ground, const GapPoint& l
     if (!query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]))) return false;
     contact.allowed_approach = gap.gap / query.lasting->step();
   }
-  if (same != out.end()) {
-    *same = contact;
-  } else {
-    out.push_back(contact);
-  }
+  (same != out.end() ? *same : out.emplace_back()) = contact;
   return true;
 }
 
