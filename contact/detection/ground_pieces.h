@@ -83,13 +83,6 @@ public:
   [[nodiscard]] ConvexOutline view(Index outline) const;
   /// A chain.
   [[nodiscard]] FaceChain chain(Index outline) const;
-  /// A corner of an outline. \param vertex number in the outline
-  [[nodiscard]] SharpCorner corner(Index outline, Index vertex) const {
-    const Range& own = outlines_[outline].vertices;
-    const auto& [at, behind, before] = around_[own.begin + vertex];
-    const Index edge_before = vertex == 0 ? own.size() - 1 : vertex - 1;
-    return {before, at, behind, false, vertex, own.size() + edge_before, own.size() + vertex};
-  }
   /// The part of an outline around a vertex, which is the first of its vertices.
   [[nodiscard]] std::span<const Vec<2>> around(Index vertex) const { return around_[vertex]; }
   /// The gap of given features, as tracked_gap() (gap_convex.h).
@@ -126,5 +119,13 @@ private:
   std::vector<ChainCorner> corners_;  // by vertex; of others than chains convex
   std::vector<Index> outline_of_;     // by vertex
 };
+
+/// A corner of an outline on ground. \param vertex number in the outline
+[[nodiscard]] inline SharpCorner corner_of(const GroundPieces& pieces, Index outline, Index vertex) {
+  const Range& own = pieces.outlines()[outline].vertices;
+  const std::span<const Vec<2>> around = pieces.around(own.begin + vertex);  // it, behind, before
+  const Index edge_before = vertex == 0 ? own.size() - 1 : vertex - 1;
+  return {around[2], around[0], around[1], false, vertex, own.size() + edge_before, own.size() + vertex};
+}
 
 }  // namespace carom

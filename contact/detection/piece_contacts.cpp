@@ -168,7 +168,7 @@ std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, In
   if (first.kind == GapKind::edge_of_a) i = nearer_end(of_a, i, of_b.vertices[j]);
   if (first.kind == GapKind::edge_of_b) j = nearer_end(of_b, j, of_a.vertices[i]);
   if (!pieces_.is_corner(b.vertices.begin + j)) return {};
-  CornerMeeting meeting{SharpCorner::of(of_a, i), pieces_.corner(on_ground, j), same_place};
+  CornerMeeting meeting{SharpCorner::of(of_a, i), corner_of(pieces_, on_ground, j), same_place};
   const BodyOutline& a = search.outline;
   const LastingContacts* const lasting = search.query.lasting;
   meeting.lasts = lasting != nullptr && lasting->contains({a.vertex(i), b.surface()}) &&

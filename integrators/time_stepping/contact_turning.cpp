@@ -151,8 +151,8 @@ bool ContactTurning::turn(const StepInput& in, StepTrial& trial, std::span<const
     any = joints.answer().follow_path(in, middle_, joints.rows(), trial) || any;
   }
   const double margin = reach(in);
-  find_at(middle_, margin, at_middle_);
-  find_at(end_, margin, at_end_);
+  find_at(middle_, margin, found_.middle);
+  find_at(end_, margin, found_.end);
   for (Turned& turned : turned_) any = turn(turned, in.start.v.data(), end_.v.data(), trial) || any;
   for (const StepIsland& island : islands) restore(island);
   return any;
@@ -181,8 +181,8 @@ bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, co
     joints.update_friction({middle_.view(), trial.at_midpoint.rotation.data()}, middle);
     joints.update_friction({end_.view(), trial.at_end.rotation.data()}, end);
   } else {
-    const Constraint *const halfway = find_in(at_middle_, turned.start), *const last =
-                                                                             find_in(at_end_, turned.start);
+    const Constraint *const halfway = find_in(found_.middle, turned.start), *const last = find_in(
+                                                                                found_.end, turned.start);
     if (halfway == nullptr || last == nullptr) return false;  // it has come to another feature, or parted
     middle.jacobian = halfway->jacobian;
     end.jacobian = last->jacobian;

@@ -14,8 +14,8 @@
 /// until its end no longer changes.
 
 #include <carom/contact/detection/contact_look.h>
-#include <carom/contact/detection/lasting_contacts.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/lasting_contacts.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -81,7 +81,9 @@ private:
   std::vector<Turned> turned_;     // by key and type
   std::vector<Index> shared_;      // bodies with contacts of two, ascending
   std::vector<Index> mechanisms_;  // components whose joints answer contact
-  std::vector<Constraint> at_middle_, at_end_;
+  struct {
+    std::vector<Constraint> middle, end;
+  } found_;                      // halfway and at the end, by key and type
   std::vector<double> lengths_;  // Assembly::length_scales()
   std::vector<double> last_;     // velocities at the end of the trial before
   double change_ = std::numeric_limits<double>::infinity();
