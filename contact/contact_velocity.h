@@ -65,4 +65,15 @@ namespace carom {
   return sum;
 }
 
+/// Constraint::speed() of the rows of a constraint. \param velocities of all bodies
+[[nodiscard]] inline std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocities) {
+  if (at.rows == 2) {
+    const std::array<double, 2> both = speeds_of_both_rows(at, velocities);
+    return {both[0], both[1], 0.0};
+  }
+  std::array<double, 3> all{};
+  for (int row = 0; row < at.rows; ++row) all[static_cast<std::size_t>(row)] = at.speed(row, velocities);
+  return all;
+}
+
 }  // namespace carom

@@ -120,7 +120,7 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   }
   add(out, companion.joints);
   add(out, companion.contacts);
-  out.add(companion.steps_owed);
+  out.add(companion.closings.steps_owed);
   out.add(std::uint64_t{companion.closings.all_free});
   out.add(std::uint64_t{companion.closings.free.size()});
   for (const ConstraintKey& key : companion.closings.free) add(out, key);
@@ -329,7 +329,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
     read_joint_history(in, version, state.v.size(), other.joints);
     read_contacts(in, version, other.contacts);
   }
-  if (version >= 11) in.get(other.steps_owed);
+  if (version >= 11) in.get(other.closings.steps_owed);
   if (version >= 14) read_closings(in, other.closings);
   in.finish();
   demand_rhythms(path, other.rhythms, companion.rhythms);

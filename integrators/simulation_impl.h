@@ -44,7 +44,6 @@ struct Simulation::Impl {
     companion.history.known = 0;
     companion.joints.clear();
     companion.iterations.clear();
-    companion.steps_owed = 0;
     companion.closings = {};
     companion.loads.valid = false;
     if (model->machines.driver) model->machines.driver->forget();

@@ -50,6 +50,7 @@ struct ClosingNotes {
   bool all_free = true;
   std::vector<ConstraintKey> free;  ///< slow ones that nothing presses: they rebound
   std::vector<ConstraintKey> cut;   ///< beyond TimeStepping::most_impacts: they do not
+  std::int64_t steps_owed = 0;      ///< that were made to find closings, beyond PartedSteps::steps_per_step
 };
 
 /// With the state, all that a checkpoint holds (but `loads` where they follow from the state).
@@ -65,7 +66,6 @@ struct Companion {
   double grid_start = 0.0;      ///< times of steps are grid_start + n h, so that rounding does not add up [s]
   std::int64_t grid_steps = 0;  ///< n
   double next_step = 0.0;       ///< of step control; 0: as described [s]
-  std::int64_t steps_owed = 0;  ///< that were made to find closings, beyond PartedSteps::steps_per_step
   ClosingNotes closings;        ///< contacts that close now
   PresentLoads loads;           ///< at the state
   ContactModes modes;           ///< contacts of the last step, by key

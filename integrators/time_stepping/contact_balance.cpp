@@ -20,17 +20,6 @@ namespace {
 
 constexpr std::size_t ahead = 8;  // contacts
 
-/// Constraint::speed() of the rows of a constraint.
-std::array<double, 3> speeds_of_rows(const Constraint& at, const double* velocities) {
-  if (at.rows == 2) {
-    const std::array<double, 2> both = speeds_of_both_rows(at, velocities);
-    return {both[0], both[1], 0.0};
-  }
-  std::array<double, 3> all{};
-  for (int row = 0; row < at.rows; ++row) all[static_cast<std::size_t>(row)] = at.speed(row, velocities);
-  return all;
-}
-
 /// Work of the contacts and limits of a problem so far, and whether one of them is an impact.
 struct BookedWork {
   ImpulseWork sum;

@@ -81,7 +81,7 @@ bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in
   for (const Index component : island.components) {
     if (parts_->joints.of(component) != nullptr) continue;
     any = parts_->located.take_up(in, {component, component + 1}, island.constraints,
-                                  parts_->constraints.places_at_end(), parts_->trial) ||
+                                  parts_->constraints.places(true), parts_->trial) ||
           any;
   }
   return any;
@@ -132,7 +132,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   // Mechanisms, and what they touch, keep to the step: it ends where they are hit.
   if (parts_->located.on() && joints == nullptr && !joined && !method_.is_newton()) {
     for (const Index component : island.components) {
-      parts_->located.expect(in, component, island.constraints, parts_->constraints.places_at_start(),
+      parts_->located.expect(in, component, island.constraints, parts_->constraints.places(false),
                              parts_->trial);
     }
   }

@@ -39,7 +39,7 @@ double LocatedMotion::work(const StepInput& in, const StepLoads& of) const {
 
 void locate_under_constant_loads(Range components, std::span<const Constraint> contacts, const StepInput& in,
                                  StepParts& parts) {
-  const GroundPlaces& places = parts.constraints.places_at_end();
+  const GroundPlaces& places = parts.constraints.places(true);
   if (!parts.located.take_up(in, components, contacts, places, parts.trial)) return;
   const double* const total = in.companion.loads.total.data();
   const Range bodies = in.assembly.bodies_of(components);

@@ -52,7 +52,7 @@ void PartedSteps::keep_impulses() {
 /// True if closings are looked for in what is left of the step.
 bool PartedSteps::may_search() const {
   const std::int64_t most = steps_per_step * std::int64_t{saved_steps};
-  return done_.companion.steps_owed + made_ < most;
+  return done_.companion.closings.steps_owed + made_ < most;
 }
 
 /// The first pair that comes deep on the way of the part. Bodies that are moved out of something at its end
@@ -149,7 +149,7 @@ void PartedSteps::step(State& state, Companion& companion, double step, double e
   }
   sum_.step = step;
   sum_.steps_made = made_;
-  std::int64_t& owed = done_.companion.steps_owed;
+  std::int64_t& owed = done_.companion.closings.steps_owed;
   owed = std::max(owed + made_ - steps_per_step, std::int64_t{0});
   sum_.findings.swap(report.findings);
   std::swap(report, sum_);

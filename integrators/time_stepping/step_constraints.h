@@ -34,10 +34,8 @@ public:
 
   /// Its detector.
   [[nodiscard]] const Detector& detector() const { return detector_; }
-  /// Ground shapes that move, at the start of the step;
-  [[nodiscard]] const GroundPlaces& places_at_start() const { return ground_.start; }
-  /// at its end.
-  [[nodiscard]] const GroundPlaces& places_at_end() const { return ground_.end; }
+  /// Ground shapes that move, at the start of the step or at its end.
+  [[nodiscard]] const GroundPlaces& places(bool at_end) const { return at_end ? ground_.end : ground_.start; }
   /// Jumps of the velocities of ground shapes in a part of the step, behind its begin and up to its end [s].
   [[nodiscard]] std::span<const GroundJump> jumps_within(double begin, double end) const;
   /// Moves ground shapes. Throws SolverError naming one whose motion is not finite or jumps.

@@ -102,7 +102,7 @@ void StepProjection::project(const Part& part, const StepInput& in, StepBalance&
   // Components that contacts join need not follow one another.
   const Range components{part.components.front(), part.components.back() + 1};
   const GapProjection::Result result = projection_.project(
-      {assembly, parts_->constraints.detector(), parts_->constraints.places_at_end(), components, joints_},
+      {assembly, parts_->constraints.detector(), parts_->constraints.places(true), components, joints_},
       {.taking_part = part.constraints, .of_bodies = part.joined}, parts_->contacts.chain(), trial.end,
       trial.at_end);
   if (result.left != nullptr) parts_->errors(in, part.components.front()).fail_projection(*result.left);
