@@ -73,21 +73,10 @@ bool NewtonIteration::linearise(const StepInput& in, const NewtonIsland& island,
   return true;
 }
 
-/// At the iterate: mean loads change with the end of the step as loads halfway do with half of that.
-bool NewtonIteration::linearise_again(const StepInput& in, const StepRule& rule, const NewtonIsland& island,
-                                      StepTrial& trial) {
-  if (!rule.is_mean()) return linearise(in, island, trial.end.view(), trial.at_end);
-  for (const Index component : island.components) {
-    trial.place_midpoint(in, component);
-    evaluate_positions(in.assembly, component, trial.midpoint.view(), trial.at_midpoint);
-  }
-  return linearise(in, island, trial.midpoint.view(), trial.at_midpoint);
-}
-
 NewtonIteration::Outcome NewtonIteration::step(const StepInput& in, const StepRule& rule,
                                                const NewtonIsland& island, StepTrial& trial) {
   if (has_joints(island)) return step_with_joints(in, rule, island, trial);
-  if (stale_ && !linearise_again(in, rule, island, trial)) return Outcome::singular;
+  if (stale_ && !linearise(in, island, trial.end.view(), trial.at_end)) return Outcome::singular;
   IslandProblem* const contact = island.contact;
   const double weight = rule.impulse_weight(in.step);
   const auto for_velocities = [&](auto&& f) {
@@ -151,7 +140,7 @@ NewtonIteration::Outcome NewtonIteration::step_with_joints(const StepInput& in, 
   }
   // Always anew: with rows that differ from those of the sweep, even by the turn of one sweep, stiff
   // couplings would be loaded across them.
-  if (!linearise_again(in, rule, island, trial)) return Outcome::singular;
+  if (!linearise(in, island, trial.end.view(), trial.at_end)) return Outcome::singular;
   IslandProblem* const contact = island.contact;
   const double weight = rule.impulse_weight(in.step);
   for (std::size_t c = 0; c < linearised_.size(); ++c) {

@@ -74,8 +74,6 @@ private:
                                const Evaluation& evaluation);
   [[nodiscard]] Outcome step_with_joints(const StepInput& in, const StepRule& rule,
                                          const NewtonIsland& island, StepTrial& trial);
-  [[nodiscard]] bool linearise_again(const StepInput& in, const StepRule& rule, const NewtonIsland& island,
-                                     StepTrial& trial);
   void solve(const StepTrial& trial, JointStage* joints, const LinearisedComponent& component);
   [[nodiscard]] SweepChange change(const StepInput& in, std::span<const Index> components,
                                    const StepTrial& trial) const;

@@ -14,7 +14,6 @@
 #include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -73,12 +72,8 @@ public:
   /// Finds the contacts of some components, likewise. Valid until the next call.
   [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
                                                 const StepTrial& trial);
-  /// Takes the constraints of an island down before its first iteration, which changes them.
-  void keep(const StepIsland& island) { kept_.assign(island.constraints.begin(), island.constraints.end()); }
-  /// Brings those of the island that was kept last back, for another iteration.
-  void restore(const StepIsland& island) const {
-    std::copy(kept_.begin(), kept_.end(), island.constraints.begin());
-  }
+  /// Memory for the constraints of an island before its first iteration, which changes them.
+  [[nodiscard]] std::vector<Constraint>& kept() { return kept_; }
 
 private:
   void remember(const StepInput& in, double last_step);
