@@ -4,20 +4,29 @@
 #include <carom/integrators/time_stepping/newton_damping.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace carom {
+
+namespace {
+
+/// True near the end, where corrections are rounding and modes of contacts may change: nothing leads away.
+bool is_near(const SweepChange& size) {
+  constexpr double near = 1e-9;  // of the numbers themselves
+  return size.change <= near * size.size;
+}
+
+}  // namespace
 
 void NewtonDamping::keep_impulses(const IslandProblem* contact) {
   impulses_.clear();
   if (contact != nullptr) impulses_.assign(contact->impulses().begin(), contact->impulses().end());
 }
 
-/// Near the end corrections are rounding, and modes of contacts may change: nothing leads away there.
 bool NewtonDamping::leads_away(const SweepChange& size) const {
-  constexpr double near = 1e-9;  // of the numbers themselves
   constexpr double least_share = 1.0 / 64.0;
-  constexpr double longer = 4.0;  // than the correction before
-  if (!known_ || share_ <= least_share || size.change <= near * size.size) return false;
+  constexpr double longer = 30.0;  // than the correction before
+  if (!known_ || share_ <= least_share || is_near(size)) return false;
   return !(size.change <= longer * size_);
 }
 
@@ -25,7 +34,7 @@ void NewtonDamping::apply(const Assembly& assembly, std::span<const Index> compo
                           const SweepChange& size, const std::vector<double>& guess,
                           std::vector<double>& correction, IslandProblem* contact, StepTrial& trial) {
   const bool back = leads_away(size);
-  share_ = back ? 0.5 * share_ : known_ ? std::min(1.0, 2.0 * share_) : 1.0;
+  share_ = back ? 0.5 * share_ : known_ && !is_near(size) ? std::min(1.0, 2.0 * share_) : 1.0;
   const auto for_ranges = [&](auto&& f) {
     for (const Index component : components) f(assembly.components()[component]);
   };
@@ -49,7 +58,8 @@ void NewtonDamping::apply(const Assembly& assembly, std::span<const Index> compo
     last_.impulses = impulses_;
     if (contact != nullptr)
       last_.next_impulses.assign(contact->impulses().begin(), contact->impulses().end());
-    size_ = size.change;
+    // The first begins with loads that are foreseen, not those of an iterate: it is no measure of the next.
+    size_ = known_ ? size.change : std::numeric_limits<double>::infinity();
     known_ = true;
   }
   const bool whole = share_ == 1.0;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Shorter steps of Newton's method where whole ones lead away: a step whose next correction is several times
+/// Shorter steps of Newton's method where whole ones lead away: a step whose next correction is many times
 /// as long is taken back, and half of it is made. Corrections are measured in velocities, so that the test
 /// does not depend on how stiff couplings are (P. Deuflhard, Newton Methods for Nonlinear Problems, Springer
 /// 2004, section 3.3). His test, that each correction is shorter than the one before, would take back good
