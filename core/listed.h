@@ -22,7 +22,8 @@ inline constexpr std::size_t longest_message = 600;
 /// "disc 'rim', disc #1 and 7 more". \param most names that are written out
 [[nodiscard]] CAROM_API std::string listed(std::span<const std::string> names,
                                            std::size_t most = most_listed);
-/// Names with one of them moved to the front, the others in their order. \param worst its place; negative: none
+/// Names with one of them moved to the front, the others in their order. \param worst its place; negative:
+/// none
 [[nodiscard]] CAROM_API std::vector<std::string> worst_first(std::vector<std::string> names, int worst);
 /// A text in at most so many bytes: a longer one loses its middle, for which " ... " stands. Characters of
 /// UTF-8 stay whole. \param most at least 16

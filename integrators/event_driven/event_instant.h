@@ -53,9 +53,9 @@ struct CAROM_API EventInstant {
   EventIslands& islands;               ///< bodies that touch each other, found by find_islands()
   /// Pairs whose slow sliding is stopped at this instant, found by ImpactSettling.
   std::vector<Index>& stopped;
-  EventBalance& balance;  ///< books
-  EventScales scales{};                ///< of the phase to come
-  double touch_gap = 0.0;              ///< gaps up to here touch, by find_touch_gap() [m]
+  EventBalance& balance;   ///< books
+  EventScales scales{};    ///< of the phase to come
+  double touch_gap = 0.0;  ///< gaps up to here touch, by find_touch_gap() [m]
   /// The rate of a driver, or of a shape on ground, jumps: contacts that were closed approach without having
   /// approached before.
   bool rate_jumps = false;

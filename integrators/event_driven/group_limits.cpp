@@ -114,8 +114,8 @@ void GroupLimits::count_event(const Event& event, const double* y, MotionSample&
   failure_->fail(what, parts_of(event, memory));
 }
 
-/// Names of the contacts of bodies that touch, those whose forces are nearest to the end of their modes first.
-/// \param island of the active set
+/// Names of the contacts of bodies that touch, those whose forces are nearest to the end of their modes
+/// first. \param island of the active set
 std::vector<std::string> GroupLimits::names_by_margin(std::size_t island) const {
   ActiveSet& active = motion_->active();
   std::vector<ForceMargin> margins;
@@ -125,9 +125,8 @@ std::vector<std::string> GroupLimits::names_by_margin(std::size_t island) const 
     const auto first = closed.begin() + static_cast<std::ptrdiff_t>(margins[island].first);
     closed = {first, closed.begin() + static_cast<std::ptrdiff_t>(margins[island].last)};
   }
-  std::stable_sort(closed.begin(), closed.end(), [](const ActiveContact& a, const ActiveContact& b) {
-    return a.margin() < b.margin();
-  });
+  std::stable_sort(closed.begin(), closed.end(),
+                   [](const ActiveContact& a, const ActiveContact& b) { return a.margin() < b.margin(); });
   return failure_->names(closed, contact_of);
 }
 

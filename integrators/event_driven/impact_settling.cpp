@@ -25,8 +25,8 @@ bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, Solv
   const double time = 2.0 * capture_ / pull;
   for (Constraint& contact : touching_) contact.of_joint.friction_bound *= time;  // of friction in a joint
   if (!solve_ahead(time, touching_, at, ahead_, problem_, chain) || !list_held(at)) return false;
-  // Where bodies cannot be moved by as much as it takes to stop what others drive, slower than constraints can
-  // tell, it counts as stopped all the same.
+  // Where bodies cannot be moved by as much as it takes to stop what others drive, slower than constraints
+  // can tell, it counts as stopped all the same.
   for (const ActiveContact& held : held_) {
     if (held.sticks()) at.stopped.push_back(held.place);
   }

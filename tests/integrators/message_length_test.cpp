@@ -8,8 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -26,31 +28,33 @@ bool has_whole_characters(std::string_view text) {
   return true;
 }
 
-/// A heap of discs and boxes in a channel whose walls close: nothing keeps it, at the latest when they meet.
-System pressed_heap(std::uint64_t seed) {
+std::string long_name(int number) {
+  std::string name = "body " + std::to_string(number) + " ";
+  for (int i = 0; i < 200; ++i) name += "\xC3\xA4";
+  return name;
+}
+
+/// A row of discs that touch each other and two walls, which close: nothing has room.
+System pressed_row(std::uint64_t seed) {
+  constexpr double radius = 0.1;
   Random random(seed);
   System system;
-  system.add(Gravity{{0.0, -g}});
   system.set_default_law({.friction = random.uniform(0.0, 0.8), .normal_restitution = 0.0});
-  system.add(HalfPlane{.normal = {0.0, 1.0}});
-  system.add(HalfPlane{.point = {0.0, 4.0}, .normal = {0.0, -1.0}});
-  const double speed = random.uniform(1.0, 3.0), carried = random.uniform(-2.0, 2.0);
+  const int count = 4 + static_cast<int>(random.below(4));
+  const double speed = random.uniform(0.1, 3.0);
+  const bool long_names = random.below(2) == 0;
   for (const double side : {-1.0, 1.0}) {
-    PrescribedMotion motion;
-    motion.position = [=](double t) { return Vec<2>(-side * speed * t, 0.0); };
-    motion.velocity = [=](double) { return Vec<2>(-side * speed, 0.0); };
-    system.add(HalfPlane{.point = {0.7 * side, 0.0}, .normal = {-side, 0.0}, .surface_speed = carried,
-                         .motion = motion});
+    system.add(HalfPlane{.point = {radius * count * side, 0.0},
+                         .normal = {-side, 0.0},
+                         .motion = {.displacement = [=](double t) { return Vec<2>(-side * speed * t, 0.0); }},
+                         .surface_speed = random.uniform(-2.0, 2.0)});
   }
-  const std::string name(random.below(2) == 0 ? 0 : 300, 'x');
-  for (int i = 0; i < 12; ++i) {
-    const Vec<2> place(0.4 * (i % 3 - 1) + random.uniform(-0.03, 0.03), 0.2 + 0.35 * (i / 3));
+  for (int i = 0; i < count; ++i) {
     const double mass = random.below(4) == 0 ? 1e9 : 1.0;
-    const BodyId body = random.below(2) == 0 ? add_disc(system, mass, 0.12, place)
-                                             : add_box(system, mass, 0.2, 0.15, place);
-    std::string of_body = name + std::to_string(i);
-    for (int k = 0; k < (name.empty() ? 0 : 100); ++k) of_body += "\xC3\xA4";
-    system.set_name(body, of_body);
+    const BodyId body =
+        system.add(RigidBody{.mass = disc(mass, radius), .position = {radius * (2 * i + 1 - count), 0.0}},
+                   long_names ? long_name(i) : std::string{});
+    system.add(Disc{.body = body, .radius = radius});
   }
   return system;
 }
@@ -59,7 +63,7 @@ System pressed_heap(std::uint64_t seed) {
 bool fails(const System& system, const Mode& mode) {
   try {
     Simulation simulation(system, mode);
-    simulation.run_until(1.0);
+    simulation.run_until(0.1);
   } catch (const SolverError& error) {
     const std::string_view what = error.what();
     EXPECT_LE(what.size(), longest_message) << what;
@@ -74,17 +78,17 @@ void run(std::uint64_t seeds) {
   int event_driven = 0, stepped = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     SCOPED_TRACE(seed);
-    const System system = pressed_heap(seed);
-    event_driven += fails(system, EventDriven{.record_events = false, .evaluation_limit = 20'000}) ? 1 : 0;
+    const System system = pressed_row(seed);
+    event_driven += fails(system, EventDriven{.record_events = false}) ? 1 : 0;
     stepped += fails(system, TimeStepping{.step = 2e-3}) ? 1 : 0;
   }
-  EXPECT_GT(event_driven, 0);
+  EXPECT_GT(event_driven + stepped, 0);
   testing::Test::RecordProperty("event_driven", std::to_string(event_driven));
   testing::Test::RecordProperty("stepped", std::to_string(stepped));
 }
 
-TEST(MessageLength, OfHeapsThatArePressed) { run(3); }
-TEST(MessageLengthLong, OfHeapsThatArePressed) { run(40); }
+TEST(MessageLength, OfRowsThatArePressed) { run(8); }
+TEST(MessageLengthLong, OfRowsThatArePressed) { run(100); }
 
 // Of a contact problem of thirty contacts the message names three, the failure all.
 TEST(MessageLength, ThreePartsAreNamedAndTheOthersCounted) {
