@@ -115,7 +115,6 @@ void ClockGroup::start(const State& state, const ContactModes& present) {
   parts_.clock = {state.time, state.time};
   parts_.motion.model().unknowns.gather(state, parts_.y);
   parts_.output.start(parts_.y);
-  parts_.books = {};
   parts_.phase = {Phase::at_event, {state.time, Guard::start}};
   parts_.impacts.start();
   parts_.modes.start();

@@ -173,6 +173,7 @@ void EventDriver::demand_laws(double from, double to) {
 void EventDriver::advance_groups(double from, double to, bool keeps_reached) {
   balance_.clear();
   reached_.is_known = false;
+  reached_.books.assign(keeps_reached && !meetings_ ? assembly_->components().size() : 0, {});
   if (meetings_) meetings_->aim_at(to);
   try {
     if (keeps_reached) {
@@ -205,16 +206,20 @@ void EventDriver::move_groups(double to, bool is_end) {
     if (is_end) meetings_->output(to, balance_);
     return;
   }
+  std::size_t place = 0;
   groups_.for_each([&](ClockGroup& group) {
-    balance_.exchange(group.parts().books);
+    // Without stretches before the end a group has no sums yet.
+    GroupBooks none_yet;
+    GroupBooks& books = reached_.books.empty() ? none_yet : reached_.books[place++];
+    balance_.exchange(books);
     try {
       group.advance(to, is_end, balance_);
     } catch (...) {
       good_until_ = group.now();
       throw;
     }
-    balance_.exchange(group.parts().books);
-    if (is_end) balance_.add(std::exchange(group.parts().books, {}));
+    balance_.exchange(books);
+    if (is_end) balance_.add(books);
   });
 }
 
@@ -222,14 +227,13 @@ void EventDriver::move_groups(double to, bool is_end) {
 void EventDriver::look_around(double time) {
   reached_.is_known = false;
   reached_.balance.copy_totals(balance_);
+  for (const GroupBooks& books : reached_.books) reached_.balance.add(books);
   reached_.state = trial_;
   reached_.state.time = time;
   reached_.modes.clear();
   reached_.solved = memory_.chain.statistics();
-  groups_.for_each([&](ClockGroup& group) {
-    if (!meetings_) reached_.balance.add(group.parts().books);
-    group.look_at(time, reached_.state, reached_.modes, reached_.balance);
-  });
+  groups_.for_each(
+      [&](ClockGroup& group) { group.look_at(time, reached_.state, reached_.modes, reached_.balance); });
   reached_.taken = std::chrono::steady_clock::now();
   reached_.is_known = true;
 }

@@ -45,7 +45,6 @@ struct CAROM_API GroupParts {
   GroupFlow flow;              ///< integrator of the smooth phases
   GroupOutput output;          ///< output state, and works booked
   std::vector<double> y;       ///< unknowns at clock.now
-  GroupBooks books;            ///< of the advance at hand, where groups go each to the end
   Phase phase;                 ///< what it is in between
 };
 

@@ -10,6 +10,7 @@
 #include <carom/integrators/run/companion.h>
 
 #include <chrono>
+#include <vector>
 
 namespace carom {
 
@@ -41,6 +42,7 @@ struct ReachedMotion {
   ContactModes modes;                           ///< of closed contacts then
   EventBalance balance;                         ///< sums up to then; without records
   ChainStatistics solved;                       ///< contact problems up to then
+  std::vector<GroupBooks> books;                ///< of groups that go each to the end, while it has not come
   std::chrono::steady_clock::time_point taken;  ///< when it was written, on the wall
 };
 
