@@ -68,10 +68,10 @@ def _name_length(model: dict[str, Any]) -> int:
 
 
 def _checksum(data: bytes) -> int:
-    """Checksum of HDF5's metadata: lookup3 of Bob Jenkins (public domain, burtleburtle.net/bob/c/lookup3.c), of a
+    """Checksum of the metadata of HDF5: lookup3 (B. Jenkins, burtleburtle.net/bob/c/lookup3.c), of bytes of a
     length that is a multiple of 4 and none of 12.
     """
-    words = struct.unpack(f"<{len(data) // 4}I", data)
+    words: tuple[int, ...] = struct.unpack(f"<{len(data) // 4}I", data)
     a = b = c = (0xDEADBEEF + len(data)) & 0xFFFFFFFF
 
     def turned(x: int, bits: int) -> int:
