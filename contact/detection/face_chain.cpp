@@ -27,12 +27,10 @@ bool FaceChain::is_beyond(Index vertex, const OutlineEdge& edge, const Vec<2>& p
     const double across = along_both(vertex).dot(point - outline.vertices[vertex]);
     return head ? across > 0.0 : across <= 0.0;
   }
-  const double along = edge.coordinate(point);
-  if (head ? along <= edge.length : along >= 0.0) return false;
-  if (corners[vertex] != ChainCorner::concave) return true;
-  // A sharp corner that stands in the inner corner is before both faces.
-  const Vec<2> off = point - outline.vertices[vertex];
-  return std::max(std::abs(off[0]), std::abs(off[1])) > lengths.corner_follows();
+  const double along = edge.coordinate(point), beyond = head ? along - edge.length : -along;
+  // A sharp corner that slides along the next face into the inner corner is before both faces, although
+  // rounding holds it a little behind the one that it slides on.
+  return beyond > (corners[vertex] == ChainCorner::concave ? lengths.corner_follows() : 0.0);
 }
 
 FaceChain::Nearest FaceChain::nearest(const Vec<2>& point) const {

@@ -66,7 +66,8 @@ private:
     const OutlinePair outlines =
         outline_pair(pair_->detector, pair_->pair, at.view(), at.evaluation, at.places);
     const FeatureRegions regions(outlines);
-    has_two_sides_ = outlines.is_sharp() && FeatureRegions::is_flat(outlines.outline);
+    // So has ground that a vertex has come through, or whose depth ends: beyond it the gap is positive again.
+    has_two_sides_ = outlines.chain || (outlines.is_sharp() && FeatureRegions::is_flat(outlines.outline));
     out.feature = regions.nearest();
     out.margin = regions.clearance(out.feature);
     return out;
@@ -75,7 +76,7 @@ private:
     constexpr int deepest = 30;
     constexpr double far = 1.0;  // a polynomial of degree 5 follows less to 1e-5 of an arm [rad]
     const double begin = from.gap.time, end = to.gap.time, way = rule_.fastest * (end - begin);
-    // Straight through a segment without thickness the gap falls to 0 and rises again, as fast as it can.
+    // Straight through such a side the gap falls to 0, or below, and is as far above 0 behind it.
     const double closed = has_two_sides_ ? rule_.raise : -rule_.raise;
     if (!(begin < until_) || from.gap.at.value + to.gap.at.value - way > 2.0 * closed) return never;
     const bool smooth = from.feature == to.feature && from.margin + to.margin > way &&
@@ -110,7 +111,7 @@ private:
   const PairGap* pair_;
   FallRule rule_;
   double until_;
-  bool has_two_sides_ = false;  // the outline is a segment without thickness
+  bool has_two_sides_ = false;  // the outline can be passed through, and its gap is positive behind it
   int looks_ = 0;
 };
 
