@@ -28,9 +28,11 @@ bool FaceChain::is_beyond(Index vertex, const OutlineEdge& edge, const Vec<2>& p
     return head ? across > 0.0 : across <= 0.0;
   }
   const double along = edge.coordinate(point), beyond = head ? along - edge.length : -along;
-  // A sharp corner that slides along the next face into the inner corner is before both faces, although
+  // A sharp corner that slides along the next face into an inner corner is before both faces, although
   // rounding holds it a little behind the one that it slides on.
-  return beyond > (corners[vertex] == ChainCorner::concave ? lengths.corner_follows() : 0.0);
+  const bool is_before_both =
+      corners[vertex] == ChainCorner::concave || corners[vertex] == ChainCorner::joined;
+  return beyond > (is_before_both ? lengths.corner_follows() : 0.0);
 }
 
 FaceChain::Nearest FaceChain::nearest(const Vec<2>& point) const {
@@ -76,10 +78,12 @@ FeatureMargin FaceChain::margin_at(Index vertex, const OutlineEdge& edge, const 
     }
     case ChainCorner::convex:
     case ChainCorner::free:
+    case ChainCorner::joined:
       break;
   }
   const double along = edge.coordinate(point);
-  return {head ? edge.length - along : along, sense * edge.along.dot(rate), vertex};
+  const double longer = corners[vertex] == ChainCorner::joined ? lengths.corner_follows() : 0.0;
+  return {(head ? edge.length - along : along) + longer, sense * edge.along.dot(rate), vertex};
 }
 
 FeatureMargin FaceChain::margin(Index feature, const Vec<2>& point, const Vec<2>& rate) const {

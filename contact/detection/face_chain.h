@@ -5,7 +5,8 @@
 /// features is the nearest, and how far the vertex is from where that changes.
 ///
 /// At concave corners the chain ends: there a vertex touches two chains. At flat corners one face follows
-/// another without a feature between them.
+/// another without a feature between them. So it is where the chain of another shape goes on: a sharp corner
+/// is before both faces there, and comes from one to the other without meeting an end of either.
 
 #include <carom/contact/detection/convex_outline.h>
 #include <carom/contact/detection/feature_region.h>
@@ -19,10 +20,11 @@ namespace carom {
 
 /// Places of a chain where one face ends.
 enum class ChainCorner : std::uint8_t {
-  convex,  ///< the next face turns to the left
-  flat,    ///< it goes on
-  free,    ///< an end of the chain, where the solid ends at a right angle
-  concave  ///< an end of the chain, where another one begins
+  convex,   ///< the next face turns to the left
+  flat,     ///< it goes on
+  free,     ///< an end of the chain, where the solid ends at a right angle
+  concave,  ///< an end of the chain, where another one begins
+  joined    ///< an end of the chain, where that of another shape goes on in one line
 };
 
 /// A view of a chain. Features are numbered as those of ConvexOutline.

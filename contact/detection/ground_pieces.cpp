@@ -1,6 +1,7 @@
 // Problem: which of the many pieces of the ground belong together, so that a contact that slides from one to
 // the next stays the same contact.
 
+#include <carom/contact/detection/flush_faces.h>
 #include <carom/contact/detection/gap_convex.h>
 #include <carom/contact/detection/gap_inside_circle.h>
 #include <carom/contact/detection/ground_pieces.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace carom {
@@ -28,6 +30,16 @@ GroundFace face_of(const GroundPiece& piece) {
           piece.tail_is_free, piece.head_is_free, piece.depth};
 }
 
+/// The boundary of a shape without pieces, if that is a line.
+std::optional<GroundLine> line_of(const GroundShapes& shapes, Index shape) {
+  if (!shapes.is_flat(shape)) return {};
+  const std::array<double, 3> origin{};
+  const Gap gap = shapes.gap(shape, nullptr, origin.data());
+  const Vec<2> normal(gap.normal[0], gap.normal[1]);
+  if (!std::isfinite(gap.distance) || !normal.allFinite()) return {};  // a user's shape, which is told later
+  return GroundLine{-gap.distance * normal, Vec<2>(-normal[1], normal[0])};
+}
+
 Vec<2> direction(const Vec<2>& from, const Vec<2>& to) {
   const std::array<Vec<2>, 2> ends{from, to};
   return OutlineEdge({ends, 0.0}, 0).along;
@@ -40,24 +52,62 @@ bool goes_on(const GroundPiece& face, const GroundPiece& next) {
          CornerTurn::concave;
 }
 
+/// Shapes that do not move, where they stand; of those that do nothing.
+std::vector<RestingShape> resting_shapes(const System& system, const GroundShapes& shapes) {
+  const auto& registry = system.ground_shape_kinds();
+  std::vector<RestingShape> all(shapes.size());
+  for (Index shape = 0; shape < shapes.size(); ++shape) {
+    if (shapes.moves(shape)) continue;
+    RestingShape& at_rest = all[shape];
+    at_rest.filter = shapes.filter(shape);
+    if (!shapes.has_pieces(shape)) {
+      at_rest.line = line_of(shapes, shape);
+      continue;
+    }
+    const auto place = registry.place(shapes.key(shape).serial);
+    const GroundShapeKind& kind = *registry.entries()[place.entry].kind;
+    kind.pieces(place.slot, at_rest.pieces);
+    const GroundMotion motion = kind.place(place.slot, 0.0);
+    for (GroundPiece& piece : at_rest.pieces) {
+      for (Vec<2>& point : piece.points) point = placed_at(motion, point);
+    }
+  }
+  return all;
+}
+
+/// Where a chain that has no free end there ends.
+ChainCorner end_corner(bool is_free, const Vec<2>& before, const Vec<2>& at, const Vec<2>& behind) {
+  if (is_free) return ChainCorner::free;
+  switch (corner_turn(direction(before, at), direction(at, behind))) {
+    case CornerTurn::convex:
+      return ChainCorner::free;
+    case CornerTurn::flat:
+      return ChainCorner::joined;
+    case CornerTurn::concave:
+      break;
+  }
+  return ChainCorner::concave;
+}
+
 }  // namespace
 
 GroundPieces::GroundPieces(const System& system, const GroundShapes& shapes, const FeatureLengths& lengths)
     : lengths_(lengths) {
+  std::vector<RestingShape> all = resting_shapes(system, shapes);
+  join_flush_faces(all);
   const auto& registry = system.ground_shape_kinds();
-  std::vector<GroundPiece> pieces, faces;
+  std::vector<GroundPiece> faces;
   for (Index shape = 0; shape < shapes.size(); ++shape) {
-    const auto place = registry.place(shapes.key(shape).serial);
-    const GroundShapeKind& kind = *registry.entries()[place.entry].kind;
-    pieces.clear();
+    if (!shapes.has_pieces(shape)) continue;
+    std::vector<GroundPiece>& pieces = all[shape].pieces;
+    if (shapes.moves(shape)) {
+      const auto place = registry.place(shapes.key(shape).serial);
+      registry.entries()[place.entry].kind->pieces(place.slot, pieces);
+    }
     faces.clear();
-    kind.pieces(place.slot, pieces);
-    if (pieces.empty()) continue;
     const auto first = static_cast<Index>(outlines_.size());
-    const double speed = kind.surface_speed(place.slot);
-    const GroundMotion at_rest = shapes.moves(shape) ? GroundMotion{} : kind.place(place.slot, 0.0);
+    const double speed = shapes.surface_speed(shape);
     for (GroundPiece& piece : pieces) {
-      for (Vec<2>& point : piece.points) point = placed_at(at_rest, point);
       if (piece.form == Form::face) {
         faces.push_back(std::move(piece));
       } else {
@@ -124,9 +174,10 @@ void GroundPieces::add_chain(const std::vector<GroundPiece>& faces, std::size_t 
     pieces_.push_back({face, static_cast<Index>(outlines_.size()), static_cast<Index>(i)});
   }
   if (!outline.is_closed) {
-    corners_[outline.vertices.begin] = tail.tail_is_free ? ChainCorner::free : ChainCorner::concave;
+    corners_[outline.vertices.begin] =
+        end_corner(tail.tail_is_free, tail.points[0], tail.points[1], tail.points[2]);
     vertices_.push_back(head.points[2]);
-    corners_.push_back(head.head_is_free ? ChainCorner::free : ChainCorner::concave);
+    corners_.push_back(end_corner(head.head_is_free, head.points[1], head.points[2], head.points[3]));
   }
   finish(outline);
 }
