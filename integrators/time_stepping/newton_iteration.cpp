@@ -262,6 +262,8 @@ bool NewtonIteration::correct_untouched(const StepInput& in, const StepRule& rul
   matrix.solve(update_.data() + v.begin, residuals_.data(), multipliers_.data());
   for (std::size_t row = 0; row < end.size(); ++row) joints.impulse[row] += multipliers_[row];
   return true;
+}
+
 SweepChange NewtonIteration::change(const StepInput& in, std::span<const Index> components,
                                     const StepTrial& trial) const {
   SweepChange largest;
