@@ -347,7 +347,7 @@ TEST(SpringDamper, WithoutStiffnessOrDampingDoesNothing) {
 }
 
 TEST(SpringDamper, InSpaceForceAndDerivativesMeetDifferences) {
-  using namespace spatial;
+  using spatial::Particle, spatial::SpringDamper;
   Random random(128);
   for (int repeat = 0; repeat < 20; ++repeat) {
     System system;
