@@ -13,7 +13,7 @@ namespace {
 // Pivots that nobody takes for those of independent rows far from a singular position.
 constexpr double small_pivot = 1e-2;
 // Ratio of masses from which on they may make a pivot so small.
-constexpr double uneven = 30.0;
+constexpr double uneven = 300.0;
 
 }  // namespace
 
