@@ -130,14 +130,10 @@ void JointConstraints::add_transposed(const double* multipliers, double* x) cons
 
 namespace {
 
-// Of what a projection begins with.
-constexpr double left_by_rounding = 1e-14;
-
-/// Corrects an answer of the factors until what it leaves is least, or does not shrink any more. \param left
-/// by row, work \param find_left writes what the present answer leaves \param add takes the correction in
-/// `left`
+/// Corrects an answer of the factors until what it leaves does not shrink any more. \param left by row, work
+/// \param find_left writes what the present answer leaves \param add takes the correction in `left`
 template <class FindLeft, class Add>
-void refine(JointFactors& factors, std::vector<double>& left, double least, FindLeft&& find_left, Add&& add) {
+void refine(JointFactors& factors, std::vector<double>& left, FindLeft&& find_left, Add&& add) {
   constexpr int most = 20;
   constexpr double shrinks = 0.5;
   double before = std::numeric_limits<double>::infinity();
@@ -145,7 +141,7 @@ void refine(JointFactors& factors, std::vector<double>& left, double least, Find
     find_left();
     double largest = 0.0;
     for (const double of_row : left) largest = std::max(largest, std::abs(of_row));
-    if (largest <= least || !(largest < shrinks * before)) return;
+    if (largest == 0.0 || !(largest < shrinks * before)) return;
     before = largest;
     for (double& of_row : left) of_row = -of_row;
     factors.solve(left.data());
@@ -156,7 +152,7 @@ void refine(JointFactors& factors, std::vector<double>& left, double least, Find
 }  // namespace
 
 void JointConstraints::solve(double* r) {
-  if (!factors_.is_uneven()) {
+  if (!factors_.is_inexact()) {
     for (std::size_t i = 0; i < size(); ++i) r[i] = -r[i];
     factors_.solve(r);
     return;
@@ -167,7 +163,7 @@ void JointConstraints::solve(double* r) {
   answer_.assign(v_.size(), 0.0);
   double* const x = answer_.data() - v_.begin;
   refine(
-      factors_, right_, 0.0,
+      factors_, right_,
       [&] {
         residuals(JointLevel::change, x, right_.data());
         for (std::size_t i = 0; i < size(); ++i) right_[i] += given_[i];
@@ -190,19 +186,16 @@ void JointConstraints::apply_inverse_mass(double* x) const {
 
 void JointConstraints::project(JointLevel level, double* x, double* multipliers) {
   if (empty()) return;
-  residuals(level, x, right_.data());
-  double first = 0.0;
-  for (const double of_row : right_) first = std::max(first, std::abs(of_row));
-  const bool uneven = factors_.is_uneven();
-  std::vector<double>& answer = uneven ? multipliers_ : right_;
-  if (uneven) multipliers_ = right_;
-  solve(answer.data());
-  add_response(answer.data(), x);
-  if (multipliers != nullptr) std::copy(answer.begin(), answer.end(), multipliers);
-  if (!uneven) return;
-  // Impulses of light bodies, summed before they act, leave their rounding times the ratio of the masses.
+  if (!factors_.is_inexact()) {
+    residuals(level, x, right_.data());
+    solve(right_.data());
+    add_response(right_.data(), x);
+    if (multipliers != nullptr) std::copy(right_.begin(), right_.end(), multipliers);
+    return;
+  }
+  if (multipliers != nullptr) std::fill_n(multipliers, size(), 0.0);
   refine(
-      factors_, right_, left_by_rounding * first, [&] { residuals(level, x, right_.data()); },
+      factors_, right_, [&] { residuals(level, x, right_.data()); },
       [&] {
         add_response(right_.data(), x);
         if (multipliers == nullptr) return;

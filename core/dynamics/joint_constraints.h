@@ -112,7 +112,7 @@ private:
   std::vector<double> inverse_mass_;        // over v_: masses are diagonal
   JointFactors factors_;
   std::vector<double> right_;
-  std::vector<double> given_, multipliers_, answer_;  // where masses are uneven: by row, the last over v_
+  std::vector<double> given_, answer_;  // where factors are inexact: by row; over v_
 };
 
 }  // namespace carom

@@ -13,17 +13,22 @@ namespace {
 // Pivots that nobody takes for those of independent rows far from a singular position.
 constexpr double small_pivot = 1e-2;
 // Ratio of masses from which on they may make a pivot so small.
-constexpr double uneven = 300.0;
+constexpr double uneven = 30.0;
+// Ratio beyond which rounding, as much larger, is more than positions have.
+constexpr double very_uneven = 1e4;
 
 }  // namespace
 
 void JointFactors::factor(const JointPattern& pattern, const double* jacobian,
                           std::span<const double> inverse_mass, Index v) {
-  uneven_ = false;
+  uneven_ = inexact_ = false;
   pattern.multiply(jacobian, inverse_mass.data(), v, by_masses_.values());
   by_masses_.factor();
-  if (!has_small_pivot() || !(weigh_alike(pattern, jacobian, inverse_mass, v) > uneven)) return;
+  if (!has_small_pivot()) return;
+  const double ratio = weigh_alike(pattern, jacobian, inverse_mass, v);
+  if (!(ratio > uneven)) return;
   uneven_ = true;
+  inexact_ = ratio > very_uneven;
   if (by_geometry_.empty()) by_geometry_.push_back(by_masses_);
   SparseFactors& geometry = by_geometry_.front();
   pattern.multiply(jacobian, alike_.data(), v, geometry.values());

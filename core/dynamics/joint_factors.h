@@ -33,9 +33,10 @@ public:
               Index v);
   /// x becomes a solution of G M^-1 G^T x = x, zero in rows that follow from others.
   void solve(double* x) { by_masses_.solve(x); }
-  /// True if masses are uneven and a pivot is small: solve() is inexact by rounding times the ratio of the
-  /// masses.
+  /// True if masses are uneven and a pivot is small: rows are judged by G D G^T.
   [[nodiscard]] bool is_uneven() const { return uneven_; }
+  /// True if they are so uneven that solve(), inexact by rounding times their ratio, is to be repeated.
+  [[nodiscard]] bool is_inexact() const { return inexact_; }
   /// Where masses are uneven, x becomes a solution of G D G^T x = x, and D is alike(), over the velocities of
   /// the component.
   void solve_alike(double* x) { by_geometry_.front().solve(x); }
@@ -62,7 +63,7 @@ private:
                     Index v);
 
   SparseFactors by_masses_;
-  bool uneven_ = false;
+  bool uneven_ = false, inexact_ = false;
   std::vector<SparseFactors> by_geometry_;  // none until masses are uneven, then one
   std::vector<double> alike_;               // D, over the velocities of the component
   std::vector<char> left_out_;              // by row
