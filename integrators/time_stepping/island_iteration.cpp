@@ -214,9 +214,7 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
   SweepsMade made;
   made.known = alone && judge.sweeps() + 1 >= expected ? LoadsKnown::by_cause : LoadsKnown::total;
   JointContacts contacts = contacts_of(island);
-  // Joints that nothing touches or rubs are iterated with their reactions.
-  const bool untouched = joints != nullptr && contacts.problem == nullptr;
-  if (newton && !untouched) {
+  if (newton && !method_.newton().follows_rows()) {
     demand(method_.newton().step(in, parts_->rule, newton_island(island), parts_->trial), island, in);
   }
   if (joined) {
@@ -245,7 +243,7 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
 
 void IslandIteration::sweep_joints(const StepIsland& island, const StepInput& in, JointStage& joints,
                                    JointContacts& contacts) {
-  if (method_.is_newton() && contacts.problem == nullptr) {
+  if (method_.is_newton() && method_.newton().follows_rows()) {
     return demand(method_.newton().sweep_untouched(in, parts_->rule, joints.iterate(), parts_->trial),
                   island, in);
   }
@@ -304,7 +302,7 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
     } else {
       sweep_joined(island, in);
     }
-    if (method_.is_newton() && contacts.problem == nullptr) {  // it asks for the loads where bodies are
+    if (method_.is_newton() && method_.newton().follows_rows()) {  // it asks for the loads where bodies are
       follow(in, front);
       parts_->schedule.evaluate(parts_->stages(in, front), LoadsKnown::total, false);
     }
