@@ -101,12 +101,12 @@ void EventDriver::start(const State& state, const Companion& companion) {
 std::size_t EventDriver::advance(State& state, Companion& companion, double target, StepReport& report,
                                  RecordedEvents& events, bool may_be_interrupted) {
   demand_laws(state.time, target);
-  good_until_ = state.time;
+  reached_.good_until = state.time;
   StoredEnergies stored;
   try {
     if (!started_) start(state, companion);
     advance_groups(state.time, target, may_be_interrupted && stop_ != nullptr && stop_->may_interrupt());
-    good_until_ = target;
+    reached_.good_until = target;
     modes_.clear();
     groups_.for_each([&](const ClockGroup& group) { group.write(trial_, modes_); });
     stored = account(state.time, target);
@@ -163,7 +163,7 @@ void EventDriver::demand_laws(double from, double to) {
   try {
     laws_.demand(from, to, options_.interval);
   } catch (...) {
-    good_until_ = laws_.good_until();
+    reached_.good_until = laws_.good_until();
     throw;
   }
 }
@@ -202,7 +202,7 @@ void EventDriver::advance_groups(double from, double to, bool keeps_reached) {
 /// \param is_end their output states are those then
 void EventDriver::move_groups(double to, bool is_end) {
   if (meetings_) {
-    meetings_->advance(to, balance_, good_until_);
+    meetings_->advance(to, balance_, reached_.good_until);
     if (is_end) meetings_->output(to, balance_);
     return;
   }
@@ -215,7 +215,7 @@ void EventDriver::move_groups(double to, bool is_end) {
     try {
       group.advance(to, is_end, balance_);
     } catch (...) {
-      good_until_ = group.now();
+      reached_.good_until = group.now();
       throw;
     }
     balance_.exchange(books);

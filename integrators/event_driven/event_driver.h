@@ -52,7 +52,7 @@ public:
                                   RecordedEvents& events);
   /// Where the last advance() failed, the time up to which the motion was decided before, not before the
   /// state's [s]. Advances to earlier times succeed, but for what their own ends bring to light.
-  [[nodiscard]] double good_until() const { return good_until_; }
+  [[nodiscard]] double good_until() const { return reached_.good_until; }
   /// Reaction of a joint at a state last advanced to, or changed to since.
   [[nodiscard]] JointReaction reaction(const State& state, const Companion& companion, JointId joint);
   /// Forces of closed contacts, likewise, in the order of their keys.
@@ -95,7 +95,6 @@ private:
   FlowCounts counted_;  // of the flows, in the statistics so far
   ReachedMotion reached_;
   const StopRequest* stop_;  // null: nobody interrupts
-  double good_until_ = 0.0;
   bool started_ = false;
 };
 

@@ -36,8 +36,8 @@ public:
   void start(double time);
   /// Begins an advance of all groups to a time [s].
   void aim_at(double to);
-  /// Goes on to a time, events at that very time included. \param reached time up to which all is decided [s],
-  /// written as it goes on: where this throws, it says how far it came
+  /// Goes on to a time, events at that very time included. \param reached time up to which all is decided
+  /// [s], written as it goes on: where this throws, it says how far it came
   void advance(double to, EventBalance& balance, double& reached);
   /// The output states at the time last advanced to.
   void output(double to, EventBalance& balance);

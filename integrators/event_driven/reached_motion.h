@@ -35,7 +35,8 @@ private:
   bool is_first_ = true;
 };
 
-/// State and sums at the end of a stretch.
+/// How far an advance has come: state and sums at the end of a stretch, and the time up to which the motion
+/// is decided.
 struct ReachedMotion {
   bool is_known = false;
   State state;                                  ///< at its time
@@ -44,6 +45,7 @@ struct ReachedMotion {
   ChainStatistics solved;                       ///< contact problems up to then
   std::vector<GroupBooks> books;                ///< of groups that go each to the end, while it has not come
   std::chrono::steady_clock::time_point taken;  ///< when it was written, on the wall
+  double good_until = 0.0;                      ///< up to this time the motion is decided [s]
 };
 
 }  // namespace carom

@@ -192,7 +192,6 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   BookedWork work;
   const std::size_t first = result_.recorded;
   const bool is_swept = problem.problem().is_factored();
-  const bool keeps_starts = is_swept || problem.constraints().size() > 1;  // one contact is solved as fast
   const ContactReport& report = problem.report();
   const ContactBooking booking(*assembly_, after,
                                {time, jumps_, report.outcome, report.solver, problem.restitution_factor()},
@@ -204,7 +203,7 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
   for (std::size_t contact = 0; contact < constraints.size(); ++contact) {
     const Constraint& at = constraints[contact];
     const auto row = static_cast<std::size_t>(problem.first_row(contact));
-    if (keeps_starts) starts.keep(at, impulses + row);
+    if (starts.are_kept()) starts.keep(at, impulses + row);
     if (at.type == ConstraintType::rolling) {
       book_rolling(problem, contact, after, in, work.sum);
     } else if (at.has_dry_friction()) {

@@ -52,7 +52,8 @@ private:
   [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
   [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,
                                         const FixedPointJudge& judge);
-  void sweep_joints(const StepIsland& island, const StepInput& in, JointStage& joints, JointContacts& contacts);
+  void sweep_joints(const StepIsland& island, const StepInput& in, JointStage& joints,
+                    JointContacts& contacts);
   void follow(const StepInput& in, Index component);
   void sweep_joined(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool converge_joints(const StepIsland& island, const StepInput& in);

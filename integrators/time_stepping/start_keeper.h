@@ -21,9 +21,12 @@ public:
   /// \param last of the step before \param problem solved \param out of this step
   StartKeeper(const ContactHistory& last, const IslandProblem& problem, ContactHistory& out)
       : last_(last),
+        are_kept_(problem.constraints().size() > 1),
         may_rest_(last.step == out.step && problem.constraints().size() <= most_of_rest &&
                   problem.report().outcome != Outcome::accepted_at_cap),
         out_(out) {}
+  /// True if impulses are kept at all: those of one contact are found as fast as they are looked up.
+  [[nodiscard]] bool are_kept() const { return are_kept_; }
   /// Keeps those of a constraint. \param impulses by row
   void keep(const Constraint& at, const double* impulses) {
     const std::array<double, 2> found{impulses[0], at.rows > 1 ? impulses[1] : 0.0};
@@ -35,7 +38,7 @@ public:
 
 private:
   const ContactHistory& last_;
-  bool may_rest_;
+  bool are_kept_, may_rest_;
   ContactHistory& out_;
   Index next_ = 0;  // most contacts are those of the step before, in the same order
 };

@@ -87,7 +87,8 @@ std::string StepErrors::tell_light_bodies(const FailedIsland& island, SolverFail
   }
   if (light.empty() || options_.force_rule != ForceRule::trapezoidal) return light;
   return light +
-         " (allowed: masses nearer to each other, or force_rule energy_momentum, under which bodies that swing "
+         " (allowed: masses nearer to each other, or force_rule energy_momentum, under which bodies that "
+         "swing "
          "fast keep their energy)";
 }
 

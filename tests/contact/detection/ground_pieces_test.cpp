@@ -233,8 +233,9 @@ TEST(GroundPieces, FacesWithoutAnInnerCornerAreOneOutline) {
   System system;
   system.add(Peg{.radius = 1}, law);
   system.add(BoxInside{.lower = {0, 0}, .upper = {4, 3}}, law);
-  system.add(Terrain{.vertices = {{0, 0}, {1, 0}, {2, 0}, {3, -1}, {4, 1}}, .depth = 1}, law);
-  system.add(Terrain{.vertices = {{0, 0}, {1, 1}, {2, 0}}, .depth = 0.1, .is_closed = true}, law);
+  // Apart from each other: faces that lie on each other would hide each other.
+  system.add(Terrain{.vertices = {{10, 0}, {11, 0}, {12, 0}, {13, -1}, {14, 1}}, .depth = 1}, law);
+  system.add(Terrain{.vertices = {{20, 0}, {21, 1}, {22, 0}}, .depth = 0.1, .is_closed = true}, law);
   const Ground ground(system);
   const std::vector<GroundOutline>& outlines = ground.pieces.outlines();
   ASSERT_EQ(ground.pieces.size(), 1U + 4U + (4U + 2U) + 3U);

@@ -167,6 +167,7 @@ TEST(JointClosure, SimulationsTellWhatWasMoved) {
   System system;
   const BodyId bob = system.add(Particle{.mass = 1.0, .position = {1.2, 0.0}});
   system.add(Rod{.from = ground, .to = bob, .length = 1.0});
+  system.close_joints();
   for (const Mode& mode : {Mode(TimeStepping{}), Mode(EventDriven{})}) {
     Simulation simulation(system, mode);
     EXPECT_NEAR(simulation.report().projected, 0.2, 1e-15);
