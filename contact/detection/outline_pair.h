@@ -78,13 +78,14 @@ struct OutlinePair {
   ConvexOutline outline;           ///< in its frame
   std::optional<FaceChain> chain;  ///< given if the outline is a chain on ground
   FeatureLengths lengths{};        ///< to which features are told apart
+  bool is_hollow = false;          ///< the outline is a circle that the vertex is inside of
 
   /// The vertex, in the frame of the outline [m].
   [[nodiscard]] Vec<2> vertex_at_outline() const {
     return outline_frame.inside(vertex_frame.outside(vertex));
   }
   /// True if neither side is rounded.
-  [[nodiscard]] bool is_sharp() const { return outline.radius + around.radius == 0.0; }
+  [[nodiscard]] bool is_sharp() const { return !is_hollow && outline.radius + around.radius == 0.0; }
 };
 
 }  // namespace carom

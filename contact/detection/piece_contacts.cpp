@@ -227,6 +227,7 @@ OutlinePair PieceContacts::outline_pair(const ContactPair& pair, const StateView
     out.vertex = outlines_.vertices()[pair.feature];
     out.around = outlines_.described(outlines_.list()[outlines_.outline_of(pair.feature)]);
     out.outline = pieces_.view(pair.ground_outline);
+    out.is_hollow = pieces_.outlines()[pair.ground_outline].is_hollow();
     if (pieces_.outlines()[pair.ground_outline].is_chain()) out.chain = pieces_.chain(pair.ground_outline);
   } else {
     const GroundOutline& on_ground = pieces_.outlines()[pieces_.outline_of(pair.ground_vertex)];

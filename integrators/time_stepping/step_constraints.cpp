@@ -46,10 +46,16 @@ void share_restitution(std::span<const StepIsland> islands, const StepInput& in,
     share_impact_restitution(island.constraints, in.start.v.data(), capture_speed);
 }
 
+/// Lengths to which features are told apart: corners in one place to a thousand tolerances of the step.
+FeatureLengths feature_lengths(const TimeStepping& options) {
+  constexpr double most = 1e3;
+  return options.tolerance > 0.0 ? FeatureLengths{.corner = most * options.tolerance} : FeatureLengths{};
+}
+
 }  // namespace
 
 StepConstraints::StepConstraints(const Assembly& assembly, const TimeStepping& options)
-    : detector_(assembly),
+    : detector_(assembly, feature_lengths(options)),
       rules_{options.capture_speed,
              gap_rounding(assembly, options),
              0.0,

@@ -116,16 +116,16 @@ void StepErrors::fail_contraction(const FixedPointJudge& judge, Iteration iterat
     message += "; limited most by " + failure.parts.front() + " (rate " + to_text(rating.rate) + ")";
   }
   message += tell_joints(island, failure);
+  const std::string light = tell_light_bodies(island, failure);
   if (rating.component_rate >= 1.0) {
     message += "; a step of " + to_text(failure.suggested_step) + " s would contract";
     if (!implicit && !automatic) message += ", as would the linearly implicit iteration";
-  } else {
+  } else if (light.empty()) {
     // The rates do not explain it: a force or an answer of contact jumps, or a force stiffens on the way.
     message += "; by their derivatives at its start the force elements contract (rate " +
                to_text(rating.component_rate) + " together), so " + tell_jumps(island, failure);
   }
-  message += tell_light_bodies(island, failure);
-  fail(message, failure);
+  fail(message + light, failure);
 }
 
 void StepErrors::fail_linearisation(std::span<const Index> components) const {

@@ -235,11 +235,11 @@ TEST(Simulation, AFailedEditChangesNothing) {
   }),
                 "particle 'wrong'", "mass", "-1");
   expect_same();
-  // A model that is refused only when it is put together: an obstacle without a law.
+  // A model that is refused only when it is put together: a joint that is drawn open.
   EXPECT_THROWS(ModelError, simulation.edit([](System& system) {
-    system.add(HalfPlane{.normal = {0.0, 1.0}}, "bare");
+    system.add(Rod{.from = {ground, {0.0, 1e3}}, .to = system.bodies().front(), .length = 1.0}, "far");
   }),
-                "'bare'", "law");
+                "rod 'far'", "from where it closes");
   expect_same();
   Simulation plain = pair_run();
   plain.every(0.25, [](Simulation&) {});

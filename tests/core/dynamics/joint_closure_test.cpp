@@ -118,7 +118,7 @@ TEST(JointClosure, DisplacementIsTheSmallestInTheSenseOfTheMasses) {
   const Vec<2> first = along + s * Vec<2>(1.0, -2.0), second = 2.0 * along + next + s * Vec<2>(-1.0, 0.5);
   const BodyId upper = system.add(RigidBody{.mass = rod(1.0, 1.0), .position = first, .angle = a});
   const BodyId lower = system.add(RigidBody{.mass = rod(3.0, 1.0), .position = second, .angle = b});
-  system.add(Revolute{.from = ground, .to = {upper, {-0.5, 0.0}}});
+  system.add(Revolute{.from = {ground, {0.0, 0.0}}, .to = {upper, {-0.5, 0.0}}});
   system.add(Revolute{.from = {upper, {0.5, 0.0}}, .to = {lower, {-0.5, 0.0}}});
   Eigen::MatrixXd g(4, 6);
   g << 1, 0, along[1], 0, 0, 0,        //

@@ -139,6 +139,7 @@ TEST(JoinedMechanisms, TheAccountClosesWhereImpactsAreLocated) {
       system.add(Rod{.from = boxes[0], .to = boxes[1]});
     } else {
       system.add(Revolute{.from = {boxes[0], {0.13, 0.0}}, .to = boxes[1]});
+      system.close_joints();  // drawn anywhere
     }
     Simulation simulation(std::move(system), TimeStepping{.step = 2e-3, .impacts = ImpactTimes::located});
     simulation.run_until(0.8);
