@@ -18,6 +18,7 @@ import json
 import math
 import os
 import sys
+import warnings
 from pathlib import Path
 from typing import Any, Optional
 
@@ -95,7 +96,12 @@ def _simulation(scene: Scene, options: argparse.Namespace) -> _core.Simulation:
     """A scene, ready to run. Raises WrongUse where it would be without --step; ModelError."""
     mode = _mode(scene, options.mode, options.step)
     try:
-        return _core.Simulation(scene.system, mode)
+        with warnings.catch_warnings(record=True) as findings:
+            warnings.simplefilter("always")
+            simulation = _core.Simulation(scene.system, mode)
+        for finding in findings:
+            print(f"carom: {finding.message}", file=sys.stderr)
+        return simulation
     except _core.ModelError as error:
         if options.step is None:
             raise

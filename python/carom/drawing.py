@@ -36,6 +36,7 @@ _SPRINGS = {
 _JOINTS = {"Revolute": "pin", "Weld": "weld", "Prismatic": "slide", "PointOnLine": "slot", "Rolling": "slot"}
 _BOTH = (("from", "to"), ("to", "from"))
 _ARC = 96  # straight pieces of a full circle
+_BAND = 0.003  # of the reach: how deep a half-plane is drawn, an eighth of where bodies go
 
 
 class Drawing:
@@ -63,7 +64,8 @@ class Drawing:
         self.joints: list[list[Any]] = []
         self.solids: list[Part] = []
         self._next_pose = len(model["bodies"]) + 1
-        shaped = {part["fields"]["body"] for part in model["parts"] if part["role"] == "shape"}
+        outlined = (part for part in model["parts"] if part["role"] == "shape" and part["type"] != "Point")
+        shaped = {part["fields"]["body"] for part in outlined}
         rigid = {part["serial"] for part in model["parts"] if part["type"] == "RigidBody"}
         self._bare = {self._pose_of_body[serial] for serial in rigid - shaped if serial in self._pose_of_body}
         self._places_described: dict[Any, tuple[float, float, float]] = {"ground": (0.0, 0.0, 0.0)}
@@ -133,6 +135,8 @@ class Drawing:
             self.polygons.append([pose, fields["radius"] or 0.0, _flat(fields["vertices"])])
         elif kind == "Point":
             self.joints.append(["point", pose, *fields["position"][:2], None])
+            if pose in self._bare and any(fields["position"][:2]):
+                self.struts.append([pose, *fields["position"][:2]])
 
     def _begin_obstacle(self, part: Part, place: list[float]) -> int:
         """The pose of a shape on ground: its place and angle, in space its place."""
@@ -167,9 +171,10 @@ class Drawing:
             self.capsules.append([pose, *local(fields["centre"]), *local(fields["centre"]), fields["radius"]])
 
     def _add_half_plane(self, pose: int, normal: list[float]) -> None:
+        """A band below the surface, so that what is behind it, another half-plane perhaps, is seen."""
         size = math.hypot(*normal)
-        n = (normal[0] / size * self._reach, normal[1] / size * self._reach)
-        t = (n[1], -n[0])
+        t = (normal[1] / size * self._reach, -normal[0] / size * self._reach)
+        n = (normal[0] / size * _BAND * self._reach, normal[1] / size * _BAND * self._reach)
         left, right = (-t[0], -t[1]), t
         deep_left, deep_right = (left[0] - n[0], left[1] - n[1]), (right[0] - n[0], right[1] - n[1])
         self.fills.append([pose, _flat([left, right, deep_left, right, deep_right, deep_left])])

@@ -37,7 +37,7 @@ def _template() -> str:
 
 
 def _bounds(recording: Recording, drawing: Drawing, size: float) -> list[float]:
-    """The rectangle that is shown at first: places of the bodies, and ground of finite size [m]."""
+    """The rectangle that is shown at first: places and ends of the bodies, pins, and ground of finite size [m]."""
     points = recording.positions[:, :, :2].reshape(-1, 2)
     sets = [points[numpy.isfinite(points).all(axis=1)]]
     poses = {item["pose"]: drawing.places[3 * i : 3 * i + 2] for i, item in enumerate(drawing.obstacles)}
@@ -48,10 +48,16 @@ def _bounds(recording: Recording, drawing: Drawing, size: float) -> list[float]:
     for pose, *ends, _ in drawing.capsules:
         if pose in poses:
             sets.append(numpy.reshape(ends, (2, 2)) + poses[pose])
-    for link in drawing.links:
-        for pose, x, y in (link[1:4], link[4:7]):
-            if pose == 0:
-                sets.append(numpy.array([[x, y]]))
+    ends = [end for link in drawing.links for end in (link[1:4], link[4:7])]
+    ends += [joint[1:4] for joint in drawing.joints] + drawing.struts
+    for pose, x, y in ends:
+        if pose == 0:
+            sets.append(numpy.array([[x, y]]))
+        elif pose <= recording.positions.shape[1] and (x or y):
+            at = recording.positions[:, pose - 1]
+            cos, sin = numpy.cos(at[:, 2]), numpy.sin(at[:, 2])
+            places = numpy.stack([at[:, 0] + cos * x - sin * y, at[:, 1] + sin * x + cos * y], axis=1)
+            sets.append(places[numpy.isfinite(places).all(axis=1)])
     every = numpy.concatenate(sets)
     if len(every) == 0:
         return [-1.0, -1.0, 1.0, 1.0]

@@ -29,12 +29,22 @@ Runner::Runner(const Model& model, const Mode& mode) : journal_(model) {
   check_threads(journal_, mode);
   simulation_ = std::make_unique<Simulation>(model.system, mode);
   python_laws_ = !find_python_part(journal_).empty();
+  warn();
   simulation_->interrupt_when(
       [this] {
         watch_.look(simulation_->time());
         return false;
       },
       [this](double time) { watch_.reach(time); });
+}
+
+/// Findings about the model are warnings of Python; the first step writes nothing of them.
+void Runner::warn() {
+  static_cast<void>(simulation_->log());
+  for (const ModelFinding& finding : simulation_->report().findings) {
+    const std::string text = std::string(to_string(finding.kind)) + ": " + finding.text;
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) < 0) throw nb::python_error();
+  }
 }
 
 void Runner::check_thread() const {
@@ -85,6 +95,7 @@ void Runner::edit(nb::handle change) {
     model.system = System();
     model.closed = true;
   };
+  const std::vector<ModelFinding> before = simulation_->report().findings;
   simulation_->edit([&](System& system) {
     model.system = std::move(system);
     try {
@@ -100,6 +111,8 @@ void Runner::edit(nb::handle change) {
   journal_ = std::move(changed);
   python_laws_ = !find_python_part(journal_).empty();
   forget_model();
+  const auto same = [](const ModelFinding& a, const ModelFinding& b) { return a.text == b.text; };
+  if (!std::ranges::equal(before, simulation_->report().findings, same)) warn();
 }
 
 void Runner::switch_to(const Mode& mode) {

@@ -88,6 +88,7 @@ private:
     ~Watched() { watch.begin({}); }
   };
   void check_thread() const;
+  void warn();
   [[nodiscard]] bool calls_python() const { return python_laws_ || !kept_.empty() || stop_; }
 
   Journal journal_;

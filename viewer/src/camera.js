@@ -66,18 +66,44 @@ export class Camera {
     const { canvas } = this;
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      const under = this.sceneAt(event.offsetX, event.offsetY), factor = STEP ** -event.deltaY;
-      this.scale *= factor;
-      this.middle = this.middle.map((value, k) => under[k] - (under[k] - value) / factor);
-      this.changed();
+      this.zoom(event.offsetX, event.offsetY, STEP ** -event.deltaY);
     }, { passive: false });
-    canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+    const fingers = new Map(); // pixels of those that touch
+    const lift = (event) => fingers.delete(event.pointerId);
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      if (event.pointerType === "touch") fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    });
+    canvas.addEventListener("pointerup", lift);
+    canvas.addEventListener("pointercancel", lift);
     canvas.addEventListener("contextmenu", (event) => { if (this.scene.inSpace) event.preventDefault(); });
     canvas.addEventListener("pointermove", (event) => {
       const { inSpace } = this.scene;
+      if (fingers.size > 1) return this.pinch(fingers, event);
+      if (fingers.size) fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
       if (inSpace && !event.shiftKey && event.buttons & 1) this.orbit(-TURN * event.movementX, TURN * event.movementY);
       else if (event.buttons & (inSpace ? 3 : 1)) this.move(-event.movementX, event.movementY);
     });
+  }
+
+  /** Scales about a pixel. */
+  zoom(px, py, factor) {
+    const under = this.sceneAt(px, py);
+    this.scale *= factor;
+    this.middle = this.middle.map((value, k) => under[k] - (under[k] - value) / factor);
+    this.changed();
+  }
+
+  /** Moves and scales with two fingers, of which one has moved: what was between them stays there. */
+  pinch(fingers, event) {
+    if (!fingers.has(event.pointerId)) return;
+    const span = ([a, b]) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+    const between = ([a, b]) => [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+    const before = [...fingers.values()].slice(0, 2);
+    fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    const now = [...fingers.values()].slice(0, 2), [from, to] = [between(before), between(now)];
+    this.move(from[0] - to[0], to[1] - from[1]);
+    if (span(before) > 0 && span(now) > 0) this.zoom(...to, span(now) / span(before));
   }
 
   orbit(azimuth, elevation) {

@@ -1,6 +1,7 @@
-// The list of events. Only the rows that are seen exist, so it may have a million.
+// The list of events: those of a kind, of a body, with a text. Only the rows that are seen exist, so it may have a
+// million.
 
-import { KINDS } from "./colours.js";
+import { colourOf } from "./colours.js";
 import { lastNotAfter, shown } from "./data.js";
 
 const ROW = 40; // [pixels]
@@ -10,23 +11,25 @@ function short(name) {
   return name.replace(/[a-z-]+ (?:#\d+|'[^']*') \(feature \d+\) of /g, "");
 }
 
+/** True of names in which a full name stands, and not only the beginning of a longer one ("particle #1" in "#10"). */
+function namesBody(name, body) {
+  for (let at = name.indexOf(body); at >= 0; at = name.indexOf(body, at + 1)) {
+    if (!/\d/.test(name[at + body.length] ?? "")) return true;
+  }
+  return false;
+}
+
 export class EventList {
   constructor(element, recording, seek) {
     this.element = element;
     this.recording = recording;
     this.seek = seek;
-    this.count = recording.event_time.length;
-    this.current = -1;
+    this.current = -1; // an event
     this.top = 0; // scrolled so far, and the height that is seen [pixels]: to ask for them costs a layout of the page
     this.height = 0;
     this.space = document.createElement("div");
     this.space.className = "space";
-    this.space.style.height = `${ROW * this.count}px`;
-    element.replaceChildren(this.space);
-    if (this.count === 0) {
-      element.innerHTML = "<p class=\"none\">No events were recorded.</p>";
-      return;
-    }
+    this.filter({});
     element.addEventListener("scroll", () => {
       this.top = element.scrollTop;
       this.fill();
@@ -37,12 +40,48 @@ export class EventList {
     });
     element.addEventListener("keydown", (event) => {
       const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-      if (!step) return;
+      if (!step || this.count === 0) return;
       event.preventDefault();
       event.stopPropagation();
-      this.go(Math.min(Math.max(this.current + step, 0), this.count - 1));
+      this.go(this.shown[Math.min(Math.max(this.placeOf(this.current) + step, 0), this.count - 1)]);
     });
   }
+
+  /** Kinds of events that there are. */
+  get kinds() {
+    const { event_kind: kinds, kinds: names } = this.recording;
+    return [...new Set(kinds)].sort((a, b) => a - b).map((kind) => names[kind]);
+  }
+
+  get count() { return this.shown.length; }
+
+  /** Lists the events of a kind, of a body (its full name), with a text; what is empty asks for nothing. */
+  filter({ kind = "", body = "", text = "" }) {
+    const { recording } = this, { event_kind: kinds, event_name: names } = recording;
+    const wanted = text.trim().toLowerCase();
+    const ofBody = recording.names.map((name) => body === "" || namesBody(name, body));
+    const hasText = recording.names.map((name) => name.toLowerCase().includes(wanted));
+    const kindHas = recording.kinds.map((name) => name.replaceAll("_", " ").includes(wanted));
+    const isKind = recording.kinds.map((name) => kind === "" || name === kind);
+    const shown = [];
+    for (let i = 0; i < kinds.length; ++i) {
+      if (isKind[kinds[i]] && ofBody[names[i]] && (hasText[names[i]] || kindHas[kinds[i]])) shown.push(i);
+    }
+    this.shown = Int32Array.from(shown);
+    this.times = Float64Array.from(shown, (i) => recording.event_time[i]);
+    this.space.style.height = `${ROW * this.count}px`;
+    if (this.count > 0) {
+      this.element.replaceChildren(this.space);
+      this.fill();
+      this.show(this.current);
+    } else {
+      const why = kinds.length ? "No event is of this kind, body and text." : "No events were recorded.";
+      this.element.innerHTML = `<p class="none">${why}</p>`;
+    }
+  }
+
+  /** Place in the list of an event, or of the last one before it; -1 if there is none. */
+  placeOf(number) { return lastNotAfter(this.shown, number); }
 
   go(number) {
     this.seek(this.recording.event_time[number]);
@@ -50,24 +89,29 @@ export class EventList {
     this.show(number);
   }
 
-  /** Marks the last event that is not after a time. */
-  follow(time, isPlaying) {
+  /** Marks the last event that is not after a time, and has it seen. */
+  follow(time) {
     if (this.count === 0) return;
-    const times = this.recording.event_time;
-    if (this.current >= 0 && times[this.current] === time) return;
-    const last = lastNotAfter(times, time);
+    if (this.current >= 0 && this.recording.event_time[this.current] === time) return;
+    const last = this.shown[lastNotAfter(this.times, time)] ?? -1;
     if (last === this.current) return;
     this.mark(last);
-    if (isPlaying) this.show(last);
+    this.show(last);
   }
 
   mark(number) {
     this.current = number;
-    for (const row of this.space.children) row.classList.toggle("current", Number(row.dataset.event) === number);
+    for (const row of this.space.children) this.markRow(row);
+  }
+
+  markRow(row) {
+    const isCurrent = Number(row.dataset.event) === this.current;
+    row.classList.toggle("current", isCurrent);
+    row.setAttribute("aria-selected", String(isCurrent));
   }
 
   show(number) {
-    const top = ROW * Math.max(number, 0);
+    const top = ROW * Math.max(this.placeOf(number), 0);
     if (top < this.top || top + ROW > this.top + this.height) {
       this.top = Math.max(0, Math.min(top - 0.5 * this.height, ROW * this.count - this.height));
       this.element.scrollTop = this.top;
@@ -83,16 +127,18 @@ export class EventList {
   fill() {
     const first = Math.max(0, Math.floor(this.top / ROW) - 4);
     const end = Math.min(this.count, Math.ceil((this.top + this.height) / ROW) + 4);
-    this.space.replaceChildren(...Array.from({ length: end - first }, (_, i) => this.row(first + i)));
+    this.space.replaceChildren(...Array.from({ length: Math.max(0, end - first) }, (_, i) => this.row(first + i)));
   }
 
-  row(number) {
-    const { recording } = this;
+  row(place) {
+    const { recording } = this, number = this.shown[place];
     const kind = recording.kinds[recording.event_kind[number]];
     const row = document.createElement("div");
-    row.className = number === this.current ? "event current" : "event";
+    row.className = "event";
+    row.setAttribute("role", "option");
     row.dataset.event = number;
-    row.style.top = `${ROW * number}px`;
+    row.style.top = `${ROW * place}px`;
+    this.markRow(row);
     const line = (name, text) => {
       const part = document.createElement("span");
       part.className = name;
@@ -100,7 +146,7 @@ export class EventList {
       return part;
     };
     const dot = line("dot", "");
-    dot.style.background = KINDS[kind];
+    dot.style.background = colourOf(kind);
     const { dimension: d, event_impulse: impulses } = recording;
     const impulse = Math.hypot(...impulses.subarray(d * number, d * number + d));
     const details = impulse > 0 ? `${shown(impulse)} N s` : recording.modes[recording.event_mode[number]].replace("_", " ");

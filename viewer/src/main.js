@@ -1,13 +1,14 @@
 // The page: one state (time, what is followed), drawn whenever it changed.
 
 import { Camera } from "./camera.js";
-import { IMPACT, MODES } from "./colours.js";
+import { colourOf, goDark } from "./colours.js";
 import { readRecording, shown } from "./data.js";
 import { EventList } from "./events.js";
 import { Pace } from "./pace.js";
 import { contactAt, poseAt } from "./pick.js";
 import { Player } from "./player.js";
 import { LedgerPlot } from "./plot.js";
+import { savePicture, Video } from "./save.js";
 import { RunScene } from "./scene.js";
 import { roundLength } from "./space.js";
 
@@ -16,6 +17,9 @@ const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 1
 
 class Page {
   constructor() {
+    const dark = window.matchMedia("(prefers-color-scheme: dark)");
+    if (dark.matches) goDark();
+    dark.addEventListener("change", () => location.reload()); // colours stand in all that was made
     this.recording = readRecording(document);
     this.dirty = true;
     const changed = () => { this.dirty = true; };
@@ -30,10 +34,14 @@ class Page {
     this.events = new EventList(element("events"), this.recording, seek);
     this.plot = new LedgerPlot(
       element("ledger"), element("cursor"), element("legend"), this.recording, (time) => this.player.seek(time));
+    this.plot.showChange(element("change").checked);
     this.pace = new Pace();
     this.frames = 0;
     this.addTexts();
     this.addControls();
+    this.addEventControls();
+    this.addSaving();
+    this.addSheets();
     this.addHover();
     new ResizeObserver(() => this.resize()).observe(document.body);
     this.resize();
@@ -44,6 +52,7 @@ class Page {
       if (this.pace.note(now - before, this.player.isPlaying)) this.changePace();
       before = now;
       if (this.dirty) this.draw();
+      if (this.video && !this.player.isPlaying) this.video.stop(); // at the end, or where it was paused
       requestAnimationFrame(frame);
     };
     requestAnimationFrame(frame);
@@ -72,14 +81,15 @@ class Page {
     element("facts").textContent = [
       count(recording.bodies.length, "body", "bodies"), count(recording.times.length, "sample", "samples"),
       count(recording.event_time.length, "event", "events")].join(" · ");
-    const names = [["stick", MODES.stick], ["slip", MODES.slip], ["impact", IMPACT]];
-    element("modes").replaceChildren(...names.map(([name, colour]) => {
+    const words = new Set([...(recording.contact_mode.length ? ["stick", "slip", "impact"] : []), ...this.events.kinds]);
+    element("modes").replaceChildren(...[...words].map((word) => {
       const item = document.createElement("span");
       item.innerHTML = "<i></i>";
-      item.firstChild.style.background = colour;
-      item.append(name);
+      item.firstChild.style.background = colourOf(word);
+      item.append(word.replaceAll("_", " "));
       return item;
     }));
+    element("scene").setAttribute("aria-label", `${recording.title}: ${element("facts").textContent}`);
     const impulse = this.scene.impulseOfArrow();
     element("arrow").hidden = !(impulse > 0);
     element("arrow").lastElementChild.textContent = `${shown(impulse)} N s`;
@@ -106,6 +116,19 @@ class Page {
       this.scene.showsContacts = event.target.checked;
       this.dirty = true;
     });
+    element("arrows").addEventListener("change", (event) => {
+      this.scene.showsArrows = event.target.checked;
+      element("arrow").hidden = !event.target.checked || !(this.scene.impulseOfArrow() > 0);
+      this.dirty = true;
+    });
+    element("arrow-size").addEventListener("input", (event) => {
+      this.scene.arrowFactor = 10 ** Number(event.target.value);
+      this.dirty = true;
+    });
+    element("change").addEventListener("change", (event) => {
+      this.plot.showChange(event.target.checked);
+      this.dirty = true;
+    });
     element("space").checked = element("space").disabled = this.scene.isSpatial;
     element("space").addEventListener("change", (event) => {
       this.scene.showSpace(event.target.checked);
@@ -117,8 +140,60 @@ class Page {
     document.addEventListener("keydown", (event) => this.key(event));
   }
 
+  addEventControls() {
+    const { events, recording } = this, [kind, body, find] = ["kind", "of-body", "find"].map(element);
+    kind.replaceChildren(new Option("all kinds", ""), ...events.kinds.map((each) => new Option(each.replaceAll("_", " "), each)));
+    const filter = () => {
+      const full = body.value.trim() && this.bodyNamed(body.value.trim());
+      body.setCustomValidity(full === undefined ? "there is no body of this name" : "");
+      events.filter({ kind: kind.value, body: full ?? body.value, text: find.value });
+      this.dirty = true;
+    };
+    for (const control of [kind, body, find]) control.addEventListener("input", filter);
+    kind.disabled = body.disabled = find.disabled = recording.event_time.length === 0;
+  }
+
+  addSaving() {
+    const { player, recording } = this, canvas = element("scene"), button = element("video");
+    element("png").addEventListener("click", () => savePicture(canvas, recording.title, () => this.draw()));
+    button.addEventListener("click", () => {
+      if (this.video) return this.video.stop();
+      try {
+        this.video = new Video(canvas, recording.title, () => {
+          this.video = null;
+          button.setAttribute("aria-pressed", "false");
+        });
+      } catch (error) {
+        button.title = error.message;
+        button.disabled = true;
+        return;
+      }
+      button.setAttribute("aria-pressed", "true");
+      player.seek(player.start);
+      player.play(true);
+    });
+  }
+
+  /** On a small screen events and energies lie over the scene where they are asked for. */
+  addSheets() {
+    const buttons = [...document.querySelectorAll(".sheet")];
+    const sheetOf = (button) => element(button.getAttribute("aria-controls"));
+    for (const button of buttons) {
+      button.addEventListener("click", () => {
+        const opens = !sheetOf(button).classList.contains("open");
+        for (const each of buttons) {
+          const isOpen = opens && each === button;
+          sheetOf(each).classList.toggle("open", isOpen);
+          each.setAttribute("aria-expanded", String(isOpen));
+        }
+        this.resize();
+      });
+    }
+  }
+
   key(event) {
-    if (event.target.matches("input[list], select")) return;
+    if (event.target.matches("input[list], input[type=search], select, input[type=range]:not(#time)")) return;
+    if (event.key === " " && event.target.matches("button, input:not(#time)")) return; // it presses what has the focus
     const actions = {
       " ": () => this.player.play(!this.player.isPlaying), ArrowLeft: () => this.player.step(-1),
       ArrowRight: () => this.player.step(1), Home: () => this.player.seek(this.player.start),
@@ -129,11 +204,17 @@ class Page {
     actions[event.key]();
   }
 
+  /** Full name of the body of a name, or of its own name where only one has it; undefined: there is none. */
+  bodyNamed(name) {
+    const { bodies } = this.recording, own = bodies.filter((full) => full.endsWith(` '${name}'`));
+    return own.length === 1 ? own[0] : bodies.find((full) => full === name);
+  }
+
   /** Follows a body by its full name, or by its own where only one has it; says so where there is none. */
   followNamed(name) {
     const { bodies } = this.recording, field = element("followed");
     const own = bodies.filter((full) => full.endsWith(` '${name}'`));
-    const pose = bodies.indexOf(own.length === 1 ? own[0] : name) + 1;
+    const pose = bodies.indexOf(this.bodyNamed(name)) + 1;
     this.follow(pose);
     if (pose > 0 || name === "") return;
     field.value = name; // to be mended
@@ -217,7 +298,7 @@ class Page {
   drawControls(sample) {
     const { player } = this;
     this.plot.draw(player.time, sample, player.isPlaying);
-    this.events.follow(player.time, player.isPlaying);
+    this.events.follow(player.time);
     element("time").value = player.end > player.start ? (player.time - player.start) / (player.end - player.start) : 0;
     element("now").textContent = `${player.time.toFixed(4)} s`;
     element("play").dataset.playing = String(player.isPlaying);

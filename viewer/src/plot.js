@@ -1,7 +1,8 @@
-// The energy ledger over time: stored energies, their total, and what was lost. A click on a name hides or shows
-// a line, a click on the plot goes to that time.
+// The energy ledger over time: stored energies, their total, and what was lost; as they are, or their changes since the
+// start, which a large energy of rest would hide. A click on a name hides or shows a line, a click on the plot goes to
+// that time.
 
-import { SERIES } from "./colours.js";
+import { GRID, INK, QUIET, SERIES } from "./colours.js";
 import { shown } from "./data.js";
 
 const STORED = ["kinetic", "gravity", "elastic", "potential"];
@@ -21,7 +22,7 @@ function seriesOf(recording) {
   const losses = flows.filter((term) => !GAINS.includes(term)).map(column);
   const lost = Float64Array.from(times, (_, i) => losses.reduce((sum, values) => sum + values[i], 0));
   const list = [
-    { name: "total", values: column("total"), colour: "#1f2933", width: 2, isShown: true },
+    { name: "total", values: column("total"), colour: INK, width: 2, isShown: true },
     ...STORED.map((term) => ({ name: term, values: column(term), isShown: true })),
     { name: "lost", values: lost, colour: "#8a1c1c", dash: [5, 3], isShown: true },
     ...flows.map((term) => ({ name: term, values: column(term), dash: [2, 2], isShown: false })),
@@ -53,6 +54,7 @@ export class LedgerPlot {
     this.legend = legend;
     this.times = recording.times;
     this.series = seriesOf(recording);
+    this.isChange = false;
     this.makeLegend();
     const go = (event) => {
       const inside = (event.offsetX - MARGIN.left) / (canvas.clientWidth - MARGIN.left - MARGIN.right);
@@ -85,6 +87,16 @@ export class LedgerPlot {
     }));
   }
 
+  /** What a line is counted from. */
+  zero(values) { return this.isChange ? values[0] : 0; }
+
+  /** Shows changes since the start, or the energies themselves. */
+  showChange(on) {
+    this.isChange = on;
+    this.shownSample = undefined;
+    this.resize();
+  }
+
   resize() {
     const { clientWidth, clientHeight } = this.canvas;
     [this.width, this.height] = [clientWidth, clientHeight]; // asked for here alone: it costs a layout of the page
@@ -94,9 +106,10 @@ export class LedgerPlot {
     let low = 0, high = 0;
     for (const { values, isShown } of this.series) {
       if (!isShown) continue;
+      const zero = this.zero(values);
       for (const value of values) {
-        if (value < low) low = value;
-        if (value > high) high = value;
+        if (value - zero < low) low = value - zero;
+        if (value - zero > high) high = value - zero;
       }
     }
     if (high === low) high = low + 1;
@@ -129,7 +142,9 @@ export class LedgerPlot {
       pen.setLineDash(dash ?? []);
       pen.beginPath();
       const stride = Math.max(1, Math.floor(values.length / 20000));
-      for (let i = 0; i < values.length; i += stride) pen.lineTo(this.x(this.times[i]), this.y(values[i]));
+      for (let i = 0; i < values.length; i += stride) {
+        pen.lineTo(this.x(this.times[i]), this.y(values[i] - this.zero(values)));
+      }
       pen.stroke();
     }
     pen.setLineDash([]);
@@ -138,8 +153,8 @@ export class LedgerPlot {
   drawAxes(pen, width, height) {
     pen.font = "11px system-ui, sans-serif";
     pen.lineWidth = 1;
-    pen.strokeStyle = "#e3e5e8";
-    pen.fillStyle = "#5b6570";
+    pen.strokeStyle = GRID;
+    pen.fillStyle = QUIET;
     pen.textBaseline = "middle";
     pen.textAlign = "right";
     for (const value of marks(...this.range, Math.max(2, height / 32))) {
@@ -164,7 +179,7 @@ export class LedgerPlot {
     const now = performance.now();
     if (sample !== this.shownSample && !(isPlaying && now - this.shownAt < BETWEEN_VALUES)) {
       [this.shownSample, this.shownAt] = [sample, now];
-      for (const { value, values } of this.series) value.textContent = `${shown(values[sample])} J`;
+      for (const { value, values } of this.series) value.textContent = `${shown(values[sample] - this.zero(values))} J`;
     }
     [this.time, this.sample] = [time, sample];
   }

@@ -31,15 +31,16 @@ export class RunScene {
     // Nothing shines through an opaque picture, which the browser need not mix with the page behind it.
     const context = canvas.getContext("webgl2", { alpha: false, antialias: false, powerPreference: "high-performance" });
     this.renderer = new WebGLRenderer({ canvas, context });
-    this.renderer.setClearColor(new Color("#fbfbf9"), 1);
+    this.renderer.setClearColor(new Color(colours.AIR), 1);
     this.three = new Scene();
     this.uniforms = {
       poses: { value: this.poses.texture }, pixel: { value: 1 }, density: { value: 1 }, picked: { value: -1 },
       arrowScale: { value: 1 },
       pickedColour: { value: new Vector3(...colours.rgb(colours.PICKED)) },
     };
-    this.showsContacts = true;
-    this.kindColours = recording.kinds.map((kind) => colours.rgb(colours.KINDS[kind]));
+    this.showsContacts = this.showsArrows = true;
+    this.arrowFactor = 1; // of the length of arrows, by the user
+    this.kindColours = recording.kinds.map((kind) => colours.rgb(colours.colourOf(kind)));
     this.bodySize = bodySize(recording);
     this.planar = []; // what is seen of the plane only
     this.space = null; // made when it is seen
@@ -144,7 +145,7 @@ export class RunScene {
   }
 
   addContacts() {
-    const modes = this.recording.modes.map((mode) => colours.rgb(colours.MODES[mode]));
+    const modes = this.recording.modes.map((mode) => colours.rgb(colours.colourOf(mode)));
     this.contacts = new Contacts(this.recording, [...modes, colours.rgb(colours.IMPACT)], this.uniforms, 8);
     this.flashes = new Marks(MOST_FLASHES, this.uniforms, 10);
     this.three.add(...this.contacts.meshes, this.flashes.mesh);
@@ -173,7 +174,7 @@ export class RunScene {
   impulseOfArrow() { return this.largeImpulse; }
 
   /** Length of that arrow [pixels]. */
-  arrowLength(camera) { return within(ARROW, 3 * this.bodySize * camera.scale); }
+  arrowLength(camera) { return this.arrowFactor * within(ARROW, 3 * this.bodySize * camera.scale); }
 
   draw(camera, { sample, fraction, time, speed }) {
     const { drawn, showsContacts } = this, isMoved = sample !== drawn.sample || fraction !== drawn.fraction;
@@ -196,7 +197,7 @@ export class RunScene {
       large.visible = !this.inSpace && !isSmall;
     }
     this.uniforms.arrowScale.value =
-      this.largeImpulse > 0 ? this.arrowLength(camera) / (camera.scale * this.largeImpulse) : 0;
+      this.largeImpulse > 0 && this.showsArrows ? this.arrowLength(camera) / (camera.scale * this.largeImpulse) : 0;
     this.renderer.render(this.three, camera.three);
   }
 

@@ -237,6 +237,8 @@ def test_the_ledger_moves_with_time(show):
     expected = 2.0 * (0.5 * width - 62.0) / (width - 76.0)
     assert page.time() == pytest.approx(expected, abs=2.0 * 2.0 / width)  # of two pixels
     sample = int(numpy.searchsorted(recording.times, page.time(), side="right")) - 1
+    page.element("change").click()  # energies themselves
+    page.settle()
     values = dict(row.text.split("\n") for row in page.element("legend").find_elements(By.TAG_NAME, "button"))
     for term in ("total", "kinetic", "gravity"):
         value = float(values[term].removesuffix(" J"))
