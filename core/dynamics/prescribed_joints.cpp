@@ -35,15 +35,18 @@ void PrescribedJoints::demand_continuous(double from, double to) {
   }
 }
 
-std::string driven_by(const Assembly& assembly, Index component) {
+std::string driven_by(const Assembly& assembly, std::span<const Index> components) {
   std::vector<std::string> names;
-  for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
-    if (!assembly.joint_kinds()[k]->depends_on_time()) continue;
-    const Range range = assembly.joints(component, k);
-    for (Index joint = range.begin; joint < range.end; ++joint)
-      names.push_back(assembly.system().name(assembly.joint_id(k, joint)));
+  for (const Index component : components) {
+    for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
+      if (!assembly.joint_kinds()[k]->depends_on_time()) continue;
+      const Range range = assembly.joints(component, k);
+      for (Index joint = range.begin; joint < range.end; ++joint) {
+        names.push_back(assembly.system().name(assembly.joint_id(k, joint)));
+      }
+    }
   }
-  return names.empty() ? std::string{} : "; bodies are driven by " + listed(names);
+  return names.empty() ? std::string() : "; bodies are driven by " + listed(names);
 }
 
 }  // namespace carom

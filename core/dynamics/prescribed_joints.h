@@ -7,6 +7,7 @@
 #include <carom/core/export.h>
 #include <carom/core/law_jump.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ private:
   std::vector<Law> laws_;
 };
 
-/// "; bodies are driven by driver 'hoist'", for messages; empty where those of a component are not.
-[[nodiscard]] CAROM_API std::string driven_by(const Assembly& assembly, Index component);
+/// "; bodies are driven by driver 'hoist'", for messages; empty where no driver moves bodies of the components.
+[[nodiscard]] CAROM_API std::string driven_by(const Assembly& assembly, std::span<const Index> components);
 
 }  // namespace carom

@@ -173,11 +173,9 @@ ElementId GroupModel::find_without_direction(const MotionSample& at, double spee
 }
 
 std::string GroupModel::driven() const {
-  for (const MotionUnknowns::Part& part : parts()) {
-    std::string drivers = driven_by(*assembly, part.component);
-    if (!drivers.empty()) return drivers;
-  }
-  return {};
+  std::vector<Index> components;
+  for (const MotionUnknowns::Part& part : parts()) components.push_back(part.component);
+  return driven_by(*assembly, components);
 }
 
 double GroupModel::kinetic_energy(const double* velocities) const {

@@ -26,15 +26,19 @@ public:
   /// Counts one more. True if with it a window is full that lasted less than its number over `most` [1/s].
   [[nodiscard]] bool exceeds(double most, double time) {
     if (++counted_ < window_) return false;
-    const bool too_often = time - since_ < static_cast<double>(window_) / most;
+    const double lasted = time - since_;
+    rate_ = static_cast<double>(window_) / lasted;
     start(time);
-    return too_often;
+    return lasted < static_cast<double>(window_) / most;
   }
+  /// How often it happened in the last full window [1/s]; infinite if all of it was at one instant.
+  [[nodiscard]] double rate() const { return rate_; }
 
 private:
   std::int64_t window_;
   std::int64_t counted_ = 0;
   double since_ = 0.0;  // start of the window [s]
+  double rate_ = 0.0;   // [1/s]
 };
 
 /// Evaluations since a component last got on: within one step of its flow, one event, one look at it.

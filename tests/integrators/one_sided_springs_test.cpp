@@ -235,6 +235,11 @@ TEST(OneSidedSprings, TooManyEventsNameTheSpring) {
     EXPECT_NE(what.find("bumper"), std::string::npos) << what;
     ASSERT_EQ(error.failure().parts.size(), 1U);
     EXPECT_NE(error.failure().parts.front().find("bumper"), std::string::npos);
+    // With the limit that it names as allowed the run goes on for as long again.
+    const std::size_t at = what.find("allowed: ");
+    ASSERT_NE(at, std::string::npos) << what;
+    Simulation longer(system, EventDriven{.event_limit = std::stod(what.substr(at + 9))});
+    EXPECT_NO_THROW(longer.run_until(2.0 * error.failure().time + 1.0)) << what;
   }
 }
 
