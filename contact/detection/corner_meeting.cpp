@@ -87,8 +87,8 @@ namespace {
 
 /// True if corners of which neither stands beyond the edge that the other one touches meet.
 bool do_meet(const GapPoint& first, const GapPoint& second, const CornerMeeting& meeting) {
-  // Corners that touched along both ends drift apart by little in a step; one that slides past the other along
-  // an edge is deep behind the other edge, which is not to push it.
+  // Corners that touched along both ends drift apart by little in a step; one that slides past the other
+  // along an edge is deep behind the other edge, which is not to push it.
   constexpr double drift = 1e4;  // places that count as one
   if (meeting.lasts && std::abs(first.gap - second.gap) <= drift * meeting.same_place) return true;
   if (std::min(first.within, second.within) < -meeting.same_place) return false;

@@ -37,7 +37,8 @@ private:
   std::vector<Law> laws_;
 };
 
-/// "; bodies are driven by driver 'hoist'", for messages; empty where no driver moves bodies of the components.
+/// "; bodies are driven by driver 'hoist'", for messages; empty where no driver moves bodies of the
+/// components.
 [[nodiscard]] CAROM_API std::string driven_by(const Assembly& assembly, std::span<const Index> components);
 
 }  // namespace carom

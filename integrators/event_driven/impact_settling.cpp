@@ -25,12 +25,12 @@ bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, Solv
   const double time = 2.0 * capture_ / pull;
   for (Constraint& contact : touching_) contact.of_joint.friction_bound *= time;  // of friction in a joint
   if (!solve_ahead(time, touching_, at, ahead_, problem_, chain) || !list_held(at)) return false;
-  // Where bodies cannot be moved by as much as it takes to stop what others drive, slower than constraints
-  // can tell, it counts as stopped all the same.
+  if (!closing_.close(held_, pairs, at)) return false;
+  // What is left of sliding is slower than constraints can tell: it counts as stopped.
   for (const ActiveContact& held : held_) {
     if (held.sticks()) at.stopped.push_back(held.place);
   }
-  return closing_.close(held_, pairs, at);
+  return true;
 }
 
 /// Lists what touches and does not fly off. False if nothing is left to settle, or no bodies touch each

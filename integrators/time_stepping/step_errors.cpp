@@ -167,8 +167,7 @@ std::vector<Index> StepErrors::components_of(const IslandProblem& problem) const
   std::vector<Index> found;
   for (const Constraint& constraint : problem.constraints()) {
     for (int b = 0; b < constraint.bodies; ++b) {
-      found.push_back(
-          in_.assembly.component_of(constraint.blocks[static_cast<std::size_t>(b)].body));
+      found.push_back(in_.assembly.component_of(constraint.blocks[static_cast<std::size_t>(b)].body));
     }
   }
   std::sort(found.begin(), found.end());
@@ -191,9 +190,9 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
   } else {
     message += to_string(problem.report().outcome);
     if (!problem.report().reason.empty()) message.append(" (").append(problem.report().reason).append(")");
-    message += ", residual " + to_text(problem.report().residual) + driven_by(in_.assembly, components_of(problem)) +
-               pressed_by(system(), problem.constraints()) + carried_by(system(), problem.constraints()) +
-               uneven_masses(problem);
+    message += ", residual " + to_text(problem.report().residual) +
+               driven_by(in_.assembly, components_of(problem)) + pressed_by(system(), problem.constraints()) +
+               carried_by(system(), problem.constraints()) + uneven_masses(problem);
     if (options_.impact_rules.refuse_jams && problem.constraints().size() > 1) {
       message +=
           "; allowed: contacts with an answer (impact_rules.refuse_jams is set; use one e for surfaces "

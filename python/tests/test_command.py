@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+import warnings
 from importlib import resources
 
 import pytest
@@ -279,10 +280,46 @@ def test_a_reader_that_has_enough_is_no_error():
 def test_check_tells_joints_that_are_drawn_open(tmp_path, capsys):
     system = carom.System()
     arm = system.add(planar.RigidBody(mass=planar.rod(1.0, 1.0)))
-    system.add(planar.Revolute(from_=carom.ground, to=(arm, (-0.5, 0.0))), name="pin")
+    pin = system.add(planar.Revolute(from_=(carom.ground, (-0.54, 0.0)), to=(arm, (-0.5, 0.0))), name="pin")
     carom.save_scene(system, tmp_path / "scene.json")
     assert main(["check", str(tmp_path / "scene.json")]) == 1
-    assert "revolute joint 'pin' by 0.5 m: open as described" in capsys.readouterr().out
+    assert "revolute joint 'pin' by 0.04" in capsys.readouterr().out
+    system.remove(pin)
+    system.add(planar.Revolute(from_=(carom.ground, (0.0, 0.0)), to=(arm, (-0.5, 0.0))), name="pin")
+    carom.save_scene(system, tmp_path / "scene.json")
+    assert main(["check", str(tmp_path / "scene.json")]) == 1
+    assert "0.5 m from where it closes" in "".join(capsys.readouterr())
+    # Asked for, the body is moved; without a point the ground's end is where the other one is.
+    system.close_joints()
+    carom.save_scene(system, tmp_path / "scene.json")
+    assert carom.load_scene(tmp_path / "scene.json").system.closes_joints()
+    closed = carom.Simulation(system, carom.EventDriven())
+    assert closed.report().projected == pytest.approx(0.5)
+    system = carom.System()
+    arm = system.add(planar.RigidBody(mass=planar.rod(1.0, 1.0), position=(5.0, 3.0)))
+    system.add(planar.Weld(from_=carom.ground, to=arm))
+    carom.save_scene(system, tmp_path / "scene.json")
+    for scene in (system, carom.load_scene(tmp_path / "scene.json").system):
+        assert carom.Simulation(scene, carom.TimeStepping()).report().projected == 0.0
+
+
+def test_findings_are_warnings(tmp_path, capsys):
+    system = carom.System()
+    system.add(planar.HalfPlane(normal=(0.0, 1.0)), carom.Surface(friction=0.3, normal_restitution=0.5))
+    for height in (1.0, 2.0):
+        body = system.add(planar.RigidBody(mass=planar.disc(1.0, 0.1), position=(0.0, height)))
+        system.add(planar.Disc(body=body, radius=0.1))
+    with pytest.warns(UserWarning, match="pass through each other") as found:
+        simulation = carom.Simulation(system, carom.TimeStepping())
+    assert len(found) == 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simulation.run_until(0.1)
+        simulation.edit(lambda edited: edited.add(planar.Gravity((0.0, -1.0))))
+    carom.save_scene(system, tmp_path / "scene.json")
+    assert main(["run", "--mode", "time-stepping", "--until", "0.1", str(tmp_path / "scene.json")]) == 0
+    told = capsys.readouterr()
+    assert told.err.count("carom: contact without a law") == 1 and "carom:" not in told.out
 
 
 def test_a_record_that_exists_is_kept(tmp_path, capsys):

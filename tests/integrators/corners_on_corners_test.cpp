@@ -336,10 +336,11 @@ constexpr double largest_of_overlap = 1e-3;
 
 double allowed_in(Mode run) { return run == Mode::steps ? largest_of_overlap : largest_asymmetry; }
 
-/// Scenes of so many that may differ from their images: bodies whose corners overlap deep after a step are held
-/// by one normal of two in time stepping, and which impact of a cluster is located first is decided by rounding.
+/// Scenes of so many that may differ from their images: bodies whose corners overlap deep after a step are
+/// held by one normal of two in time stepping, and which impact of a cluster is located first is decided by
+/// rounding.
 int allowed_to_differ(Mode run, const carom_test::SeedRange& seeds) {
-  const auto count = static_cast<int>(seeds.count());
+  const int count = seeds.count();
   if (run == Mode::events) return 1 + count / 50;
   return run == Mode::located ? 1 + count / 6 : 1 + count / 10;
 }

