@@ -59,7 +59,7 @@ private:
     RestingShape& of = shapes_[shape];
     if (of.line) {
       const Box<2> everywhere{Vec<2>(-without_bound, -without_bound), Vec<2>(without_bound, without_bound)};
-      lines_.push_back({shape, *of.line});
+      lines_.emplace_back(shape, *of.line);
       solids_.push_back({shape, pieces_++, {*of.line}, everywhere});
       return;
     }

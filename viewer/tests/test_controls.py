@@ -33,6 +33,7 @@ def dark(browser):
     features = [{"name": "prefers-color-scheme", "value": "dark"}]
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
     yield
+    browser.get("about:blank")  # the page loads itself anew where colours change
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
 
 
