@@ -30,9 +30,9 @@ std::string light_bodies(const Assembly& assembly, Index component, std::vector<
   for (Index body = bodies.begin; body < bodies.end; ++body) {
     if (mass_of(body) <= light * largest) names.push_back(assembly.system().name(layout.id(body)));
   }
-  std::string text =
-      "; light are " + listed(names, most) + ", from " + to_text(least) + " kg, against " + to_text(largest) +
-      " kg of " + assembly.system().name(layout.id(heaviest)) + ", a ratio of " + to_text(largest / least);
+  std::string text = "; light are " + listed(names, most) + ", from " + to_text(least) + " kg, against " +
+                     to_text(largest) + " kg of " + assembly.system().name(layout.id(heaviest)) +
+                     ", a ratio of " + to_text(largest / least);
   names.resize(std::min(names.size(), most));
   parts.insert(parts.end(), names.begin(), names.end());
   return text;

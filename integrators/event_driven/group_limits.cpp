@@ -103,10 +103,10 @@ void GroupLimits::count_step(double time, const double* y, MotionSample& memory)
 }
 
 /// The event_limit that the last events would need, with twice their rate in two digits.
-std::string GroupLimits::allowed_events() const {
+std::string GroupLimits::allowed_events(double time) const {
   double rate = 0.0;
   for (const MotionUnknowns::Part& part : motion_->model().parts()) {
-    rate = std::max(rate, counts_->events[part.component].rate());
+    rate = std::max(rate, counts_->events[part.component].excessive_rate(time));
   }
   if (!std::isfinite(rate)) return "; the last ones are all at one instant";
   const double digit = std::pow(10.0, std::floor(std::log10(rate)) - 1.0);
@@ -118,7 +118,7 @@ void GroupLimits::count_event(const Event& event, const double* y, MotionSample&
   if (!exceeds(counts_->events, model.options->event_limit, event.time)) return;
   motion_->sample(event.time, y, Forces::all, memory);
   std::string what = "more than " + to_text(model.options->event_limit) + " events per second (event_limit" +
-                     allowed_events() + ")";
+                     allowed_events(event.time) + ")";
   // Where two ends have met, their line turns round by rounding, and with it the force, at one event after
   // the other.
   const ElementId lost = model.find_without_direction(memory, std::numeric_limits<double>::infinity());

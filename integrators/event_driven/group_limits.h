@@ -51,7 +51,7 @@ public:
 
 private:
   [[nodiscard]] bool exceeds(std::vector<RateLimit>& counts, double most, double time);
-  [[nodiscard]] std::string allowed_events() const;
+  [[nodiscard]] std::string allowed_events(double time) const;
   [[nodiscard]] std::vector<std::string> names_by_margin(std::size_t island) const;
   [[nodiscard]] std::vector<std::string> parts_of(const Event& event, const MotionSample& at) const;
 

@@ -23,22 +23,24 @@ public:
     counted_ = 0;
     since_ = time;
   }
-  /// Counts one more. True if with it a window is full that lasted less than its number over `most` [1/s].
+  /// Counts one more. True if with it a window is full that lasted less than its number over `most` [1/s];
+  /// that window stays.
   [[nodiscard]] bool exceeds(double most, double time) {
     if (++counted_ < window_) return false;
-    const double lasted = time - since_;
-    rate_ = static_cast<double>(window_) / lasted;
+    if (time - since_ < static_cast<double>(window_) / most) return true;
     start(time);
-    return lasted < static_cast<double>(window_) / most;
+    return false;
   }
-  /// How often it happened in the last full window [1/s]; infinite if all of it was at one instant.
-  [[nodiscard]] double rate() const { return rate_; }
+  /// How often it happened in a window that was too short, up to a time [1/s]; infinite if all of it was at
+  /// one instant, 0 where no window was too short.
+  [[nodiscard]] double excessive_rate(double time) const {
+    return counted_ < window_ ? 0.0 : static_cast<double>(window_) / (time - since_);
+  }
 
 private:
   std::int64_t window_;
   std::int64_t counted_ = 0;
   double since_ = 0.0;  // start of the window [s]
-  double rate_ = 0.0;   // [1/s]
 };
 
 /// Evaluations since a component last got on: within one step of its flow, one event, one look at it.

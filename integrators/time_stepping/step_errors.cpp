@@ -67,6 +67,19 @@ void check_exclusions(const TimeStepping& options) {
   }
 }
 
+/// Components whose bodies a contact problem moves, each once: whatever drives one of them pushes the others.
+std::vector<Index> components_of(const Assembly& assembly, const IslandProblem& problem) {
+  std::vector<Index> found;
+  for (const Constraint& constraint : problem.constraints()) {
+    for (int b = 0; b < constraint.bodies; ++b) {
+      found.push_back(assembly.component_of(constraint.blocks[static_cast<std::size_t>(b)].body));
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
 }  // namespace
 
 void check_options(const TimeStepping& options) {
@@ -162,19 +175,6 @@ void StepErrors::find_cause(bool implicit) const {
   demand_finite_loads(at_end);
 }
 
-/// Components whose bodies a contact problem moves, each once: whatever drives one of them pushes the others.
-std::vector<Index> StepErrors::components_of(const IslandProblem& problem) const {
-  std::vector<Index> found;
-  for (const Constraint& constraint : problem.constraints()) {
-    for (int b = 0; b < constraint.bodies; ++b) {
-      found.push_back(in_.assembly.component_of(constraint.blocks[static_cast<std::size_t>(b)].body));
-    }
-  }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
-}
-
 void StepErrors::fail_contact(const IslandProblem& problem) const {
   SolverFailure failure = failure_of(problem);
   const auto b = problem.problem().vector();
@@ -191,8 +191,9 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
     message += to_string(problem.report().outcome);
     if (!problem.report().reason.empty()) message.append(" (").append(problem.report().reason).append(")");
     message += ", residual " + to_text(problem.report().residual) +
-               driven_by(in_.assembly, components_of(problem)) + pressed_by(system(), problem.constraints()) +
-               carried_by(system(), problem.constraints()) + uneven_masses(problem);
+               driven_by(in_.assembly, components_of(in_.assembly, problem)) +
+               pressed_by(system(), problem.constraints()) + carried_by(system(), problem.constraints()) +
+               uneven_masses(problem);
     if (options_.impact_rules.refuse_jams && problem.constraints().size() > 1) {
       message +=
           "; allowed: contacts with an answer (impact_rules.refuse_jams is set; use one e for surfaces "

@@ -72,7 +72,6 @@ public:
   [[noreturn]] void refuse_gain(const IslandProblem& problem, double gain) const;
 
 private:
-  [[nodiscard]] std::vector<Index> components_of(const IslandProblem& problem) const;
   [[nodiscard]] std::string tell_turn(SolverFailure& failure) const;
   [[nodiscard]] std::string tell_joints(const FailedIsland& island, SolverFailure& failure) const;
   [[nodiscard]] std::string tell_jumps(const FailedIsland& island, SolverFailure& failure) const;

@@ -109,9 +109,11 @@ TEST(CornerMeeting, CornersMeetInOnePlaceWhenTheyCameFromThereAndWhereTheyDidBef
   };
   const Vec<2> middle = direction(1.75), aside = direction(1.4);
   EXPECT_TRUE(meets({0.0, 0.0}, {0.0, 0.0}, false));
-  EXPECT_TRUE(meets(-1e-3 * middle, {0.0, 0.0}, false));     // gaps are the same
-  EXPECT_FALSE(meets(-1e-3 * aside, {0.0, 0.0}, false));     // and here they are not,
-  EXPECT_TRUE(meets(-1e-3 * aside, {0.0, 0.0}, true));       // unless they met before,
+  EXPECT_TRUE(meets(-1e-3 * middle, {0.0, 0.0}, false));  // gaps are the same
+  EXPECT_FALSE(meets(-1e-3 * aside, {0.0, 0.0}, false));  // and here they are not,
+  EXPECT_FALSE(meets(-1e-3 * aside, {0.0, 0.0}, true));
+  EXPECT_FALSE(meets(-1e-5 * aside, {0.0, 0.0}, false));
+  EXPECT_TRUE(meets(-1e-5 * aside, {0.0, 0.0}, true));       // unless they met before and are near,
   EXPECT_TRUE(meets(-1e-3 * aside, -2.0 * aside, false));    // or came straight from the corner
   EXPECT_FALSE(meets(-1e-3 * aside, -2.0 * middle, false));  // not from beside it,
   const Vec<2> along = direction(1.0 - 0.5 * pi);
