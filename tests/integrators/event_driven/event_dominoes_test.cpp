@@ -71,8 +71,4 @@ TEST(EventDominoesLong, OfAllFrictionAndRestitution) {
   }
 }
 
-TEST(EventDominoesLong, Twenty) {
-  for (const double friction : {0.2, 0.4, 0.8}) run({20, friction, 0.1}, 2.0);
-}
-
 }  // namespace
