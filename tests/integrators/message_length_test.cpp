@@ -88,7 +88,6 @@ void run(std::uint64_t seeds) {
 }
 
 TEST(MessageLength, OfRowsThatArePressed) { run(8); }
-TEST(MessageLengthLong, OfRowsThatArePressed) { run(100); }
 
 // Of a contact problem of thirty contacts the message names three, the failure all.
 TEST(MessageLength, ThreePartsAreNamedAndTheOthersCounted) {
