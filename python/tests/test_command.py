@@ -53,7 +53,7 @@ def test_errors_have_line_and_field(tmp_path, capsys):
     file = tmp_path / "scene.json"
     file.write_text(BALL.read_text().replace('"mass": 1.0', '"mass": "1 kg"'))
     assert main(["run", str(file)]) == 1
-    assert f'{file}:5: bodies[0].mass: must be a number, not "1 kg"' in capsys.readouterr().err
+    assert f'{file}:6: bodies[0].mass: must be a number, not "1 kg"' in capsys.readouterr().err
     assert main(["check", str(tmp_path / "none.json")]) == 1
     assert "cannot be read" in capsys.readouterr().err
 
