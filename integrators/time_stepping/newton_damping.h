@@ -31,7 +31,7 @@ public:
   /// and the correction that is made.
   /// \param components of the island \param size of the correction
   /// \param guess the next guess of a whole step, over all velocities
-  /// \param correction of velocities, likewise
+  /// \param correction of velocities, over all velocities
   void apply(const Assembly& assembly, std::span<const Index> components, const SweepChange& size,
              const std::vector<double>& guess, std::vector<double>& correction, IslandProblem* contact,
              StepTrial& trial);

@@ -229,7 +229,7 @@ PassageSearch::Passage PassageSearch::first(const State& start, const State& end
   return {};
 }
 
-/// Likewise where all positions change evenly. \param begin of the whole way
+/// First passage on a part of the way on which all positions change evenly. \param begin of the whole way
 PassageSearch::Passage PassageSearch::first_on_chord(const State& start, const State& end,
                                                      const State& begin) {
   step_ = end.time - start.time;

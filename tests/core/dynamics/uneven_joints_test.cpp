@@ -188,7 +188,7 @@ TEST(UnevenJoints, ProjectionsObeyJointsByForcesAlongThem) {
       for (Index i = v.begin; i < v.end; ++i) {
         EXPECT_NEAR((after[i] - before[i]) / response[i], along[i], 1e-13 * std::max(largest, 1.0)) << seed;
       }
-      // Impulses likewise, by the multipliers alone.
+      // Impulses change by the multipliers alone.
       std::vector<double> right(joints.size()), answer(before.size(), 0.0);
       joints.residuals(JointLevel::change, before.data(), right.data());
       joints.solve(right.data());
