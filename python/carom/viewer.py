@@ -48,9 +48,9 @@ def _bounds(recording: Recording, drawing: Drawing, size: float) -> list[float]:
     for pose, *ends, _ in drawing.capsules:
         if pose in poses:
             sets.append(numpy.reshape(ends, (2, 2)) + poses[pose])
-    ends = [end for link in drawing.links for end in (link[1:4], link[4:7])]
-    ends += [joint[1:4] for joint in drawing.joints] + drawing.struts
-    for pose, x, y in ends:
+    pinned = [end for link in drawing.links for end in (link[1:4], link[4:7])]
+    pinned += [joint[1:4] for joint in drawing.joints] + drawing.struts
+    for pose, x, y in pinned:
         if pose == 0:
             sets.append(numpy.array([[x, y]]))
         elif pose <= recording.positions.shape[1] and (x or y):
