@@ -50,57 +50,53 @@ bool JointFactors::has_small_pivot() const {
 /// Finds D. Returns the ratio of the masses that joints feel, those of angles over the squares of lengths.
 double JointFactors::weigh_alike(const JointPattern& pattern, const double* jacobian,
                                  std::span<const double> inverse_mass, Index v) {
-  find_lengths(pattern, jacobian, inverse_mass, v);
+  find_squared_lengths(pattern, jacobian, inverse_mass, v);
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (std::size_t i = 0; i < alike_.size(); ++i) {
     if (!(inverse_mass[i] > 0.0)) {  // keeps its place
       alike_[i] = 0.0;
       continue;
     }
-    const double length = alike_[i], felt = inverse_mass[i] * length * length;
+    const double felt = inverse_mass[i] * alike_[i];
     least = std::min(least, felt);
     most = std::max(most, felt);
-    alike_[i] = 1.0 / (length * length);
+    if (alike_[i] != 1.0) alike_[i] = 1.0 / alike_[i];
   }
   return most > 0.0 ? most / least : 1.0;
 }
 
-/// Length of each velocity, into alike_: 1 of a place; of an angle the longest lever at which joints hold the
-/// body, or its radius of gyration where that is longer, between bounds by the longest lever of all: levers
-/// along the forces are not seen, and a radius of gyration may be anything.
-void JointFactors::find_lengths(const JointPattern& pattern, const double* jacobian,
-                                std::span<const double> inverse_mass, Index v) {
-  constexpr double shortest = 0.03;  // of the longest lever
-  constexpr double unseen = 1e-9;    // lever against radius of gyration that is rounding
+/// Square of the length of each velocity, into alike_: 1 of a place; of an angle the longest lever at which
+/// joints hold the body, or its radius of gyration where that is longer, between bounds by the longest lever
+/// of all: levers along the forces are not seen, and a radius of gyration may be anything.
+void JointFactors::find_squared_lengths(const JointPattern& pattern, const double* jacobian,
+                                        std::span<const double> inverse_mass, Index v) {
+  constexpr double shortest = 0.03 * 0.03;  // of the longest lever
+  constexpr double unseen = 1e-9 * 1e-9;    // lever against radius of gyration that is rounding
   const Index places = pattern.dimension();
-  alike_.assign(inverse_mass.size(), 0.0);
-  const auto gyration = [&](Index angle, Index place) {
-    return inverse_mass[angle] > 0.0 ? std::sqrt(inverse_mass[place] / inverse_mass[angle]) : 0.0;
-  };
+  alike_.assign(inverse_mass.size(), 1.0);
+  pattern.for_angles([&](Index angle, Index) { alike_[angle - v] = 0.0; });
   double longest = 0.0;
-  const auto for_angles = [&](auto&& f) {
-    pattern.for_blocks(jacobian,
-                       [&](Index, auto rows, auto columns, Index first, const double* number, auto stride) {
-                         for (Index c = places; c < columns; ++c) f(rows, first - v, c, number, stride);
-                       });
-  };
-  for_angles([&](Index rows, Index first, Index c, const double* number, Index stride) {
-    for (Index i = 0; i < rows; ++i) {
-      const double* const row = number + i * stride;
-      if (std::all_of(row, row + places, [](double at) { return at == 0.0; })) continue;
-      const double lever = std::abs(row[c]);
-      if (lever > unseen * gyration(first + c, first)) alike_[first + c] = std::max(alike_[first + c], lever);
-      longest = std::max(longest, alike_[first + c]);
-    }
-  });
-  for_angles([&](Index, Index first, Index c, const double*, Index) {
-    const double own = gyration(first + c, first);
-    const double bounded = longest > 0.0 ? std::clamp(own, shortest * longest, longest) : own;
-    alike_[first + c] = std::max(alike_[first + c], bounded);
-  });
-  for (double& length : alike_) {
+  pattern.for_blocks(jacobian,
+                     [&](Index, auto rows, auto columns, Index first, const double* number, auto stride) {
+                       for (Index i = 0; i < rows; ++i, number += stride) {
+                         if (std::all_of(number, number + places, [](double at) { return at == 0.0; }))
+                           continue;
+                         for (Index c = places; c < columns; ++c) {
+                           const Index angle = first - v + c;
+                           const double lever = number[c] * number[c];
+                           if (lever * inverse_mass[angle] <= unseen * inverse_mass[first - v]) continue;
+                           alike_[angle] = std::max(alike_[angle], lever);
+                           longest = std::max(longest, lever);
+                         }
+                       }
+                     });
+  pattern.for_angles([&](Index angle, Index place) {
+    const double turning = inverse_mass[angle - v];
+    const double own = turning > 0.0 ? inverse_mass[place - v] / turning : 0.0;
+    double& length = alike_[angle - v];
+    length = std::max(length, longest > 0.0 ? std::clamp(own, shortest * longest, longest) : own);
     if (!(length > 0.0)) length = 1.0;
-  }
+  });
 }
 
 }  // namespace carom

@@ -59,8 +59,8 @@ private:
   [[nodiscard]] bool has_small_pivot() const;
   [[nodiscard]] double weigh_alike(const JointPattern& pattern, const double* jacobian,
                                    std::span<const double> inverse_mass, Index v);
-  void find_lengths(const JointPattern& pattern, const double* jacobian, std::span<const double> inverse_mass,
-                    Index v);
+  void find_squared_lengths(const JointPattern& pattern, const double* jacobian,
+                            std::span<const double> inverse_mass, Index v);
 
   SparseFactors by_masses_;
   bool uneven_ = false, inexact_ = false;

@@ -13,7 +13,7 @@ namespace carom {
 static_assert(JointKind::most_rows <= SparseFactors::most_rows);
 
 JointPattern::JointPattern(const Assembly& assembly, Index component, SparseFactors& factors)
-    : assembly_(&assembly) {
+    : assembly_(&assembly), bodies_(assembly.components()[component].bodies) {
   for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
     const JointKind& joints = *assembly.joint_kinds()[kind];
     const Range range = assembly.joints(component, kind);

@@ -30,6 +30,9 @@ public:
   [[nodiscard]] bool depends_on_time() const { return depends_on_time_; }  ///< true if a row does
   /// Velocities of a body that are not of angles.
   [[nodiscard]] Index dimension() const { return static_cast<Index>(assembly_->layout()->dimension()); }
+  /// Calls f(velocity of an angle, first velocity of its body) for the angles of all bodies of the component.
+  template <class F>
+  void for_angles(F&& f) const;
   /// First of the rows of a joint; their number behind the last joint.
   [[nodiscard]] Index first_row(std::size_t joint) const { return joints_[joint].row; }
   /// Joint of a row.
@@ -94,6 +97,7 @@ private:
   [[nodiscard]] const OfKind& kind_of(std::size_t joint) const;
 
   const Assembly* assembly_ = nullptr;
+  Range bodies_{};  // of the component
   std::vector<OfKind> kinds_;
   std::vector<Joint> joints_ = {{0, 0, 0}};  // and an end
   std::vector<Block> blocks_;
@@ -114,7 +118,15 @@ void with_sizes(Index rows, Index columns, F&& f) {
   }
 }
 
-/// Likewise where everything is usual.
+template <class F>
+void JointPattern::for_angles(F&& f) const {
+  for (Index body = bodies_.begin; body != bodies_.end; ++body) {
+    const BodySlot at = assembly_->layout()->bodies()[body];
+    for (Index c = dimension(); c < at.v_size; ++c) f(at.v + c, at.v);
+  }
+}
+
+/// for_blocks() where all joints are pins.
 template <class F>
 void JointPattern::for_pins(const double* jacobian, F&& f) const {
   constexpr std::integral_constant<Index, 2> rows;
