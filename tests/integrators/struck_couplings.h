@@ -18,7 +18,8 @@ namespace carom_test {
 /// the ground, couplings unloaded.
 class StruckCouplings {
 public:
-  explicit StruckCouplings(std::uint64_t number) : random_(number) {
+  /// \param decades stiffnesses are from 1 N/m to ten to this power, dampings and gains to half of it
+  explicit StruckCouplings(std::uint64_t number, double decades = 8.0) : random_(number), decades_(decades) {
     using namespace carom;
     using namespace carom::planar;
     if (random_.below(3) > 0) system_.add(Gravity{{0.0, -9.81}});
@@ -50,8 +51,10 @@ private:
             .normal_restitution = e,
             .tangential_restitution = random_.below(2) * e};
   }
-  double stiffness() { return std::pow(10.0, random_.uniform(0.0, 8.0)); }
-  double damping() { return random_.below(3) == 0 ? 0.0 : std::pow(10.0, random_.uniform(0.0, 4.0)); }
+  double stiffness() { return std::pow(10.0, random_.uniform(0.0, decades_)); }
+  double damping() {
+    return random_.below(3) == 0 ? 0.0 : std::pow(10.0, random_.uniform(0.0, 0.5 * decades_));
+  }
 
   /// A disc, a box, or, where `turns` is not asked for, a particle.
   carom::BodyId add_body(const carom::Vec<2>& place, const carom::Vec<2>& velocity, bool turns = false) {
@@ -169,7 +172,8 @@ private:
       }
       case 3: {
         // A motor: force against a speed that is wanted.
-        const double gain = std::pow(10.0, random_.uniform(0.0, 4.0)), wanted = random_.uniform(-1.0, 1.0);
+        const double gain = std::pow(10.0, random_.uniform(0.0, 0.5 * decades_)),
+                     wanted = random_.uniform(-1.0, 1.0);
         system_.add(
             LinearActuator{.from = end(a, at_a, from),
                            .to = end(b, at_b, to),
@@ -179,7 +183,8 @@ private:
         return;
       }
       default: {
-        const double gain = std::pow(10.0, random_.uniform(-1.0, 3.0)), wanted = random_.uniform(-5.0, 5.0);
+        const double gain = std::pow(10.0, random_.uniform(-1.0, 0.5 * decades_ - 1.0)),
+                     wanted = random_.uniform(-5.0, 5.0);
         system_.add(RotaryActuator{.from = a, .to = b, .torque = [=](double, double, double rate) {
                                      return gain * (wanted - rate);
                                    }});
@@ -200,6 +205,7 @@ private:
   }
 
   Random random_;
+  double decades_;
   carom::System system_;
   std::vector<carom::BodyId> turns_;
   std::vector<double> angles_;

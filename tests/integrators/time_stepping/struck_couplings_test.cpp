@@ -169,10 +169,10 @@ TEST(StruckCouplings, TheErrorNamesTheCouplingAlsoOfALaterComponent) {
 }
 
 /// Runs for 0.8 s. Returns how many scenes end in an error; each names parts.
-int count_failures(carom_test::SeedRange seeds, const TimeStepping& options) {
+int count_failures(carom_test::SeedRange seeds, const TimeStepping& options, double decades = 8.0) {
   int failed = 0;
   for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
-    Simulation simulation(StruckCouplings(seed).system(), options);
+    Simulation simulation(StruckCouplings(seed, decades).system(), options);
     try {
       simulation.run_until(0.8);
     } catch (const SolverError& error) {
@@ -190,9 +190,20 @@ int count_failures(carom_test::SeedRange seeds, const TimeStepping& options) {
 
 TEST(StruckCouplings, RandomScenesRun) { EXPECT_LE(count_failures({1000, 1040}, {.step = 2e-3}), 1); }
 
-// Before contact was within the linearised step 60 % of these scenes, which are stiff up to 1e8 N/m, failed
-// at 2 ms. Of the long family at most one in twenty-five may, and one more for each share of it,
-// at_step_start; where impacts are located there are more contacts in a step.
+// Couplings up to 1e4 N/m: before contact was within the linearised step 98 of 300 of these scenes failed at
+// 2 ms. Of 1,500 none does, 3 under energy_momentum, 1 where impacts are located; one in a hundred is the
+// aim.
+TEST(StruckCouplingsLong, ScenesOfUsualStiffnessRun) {
+  const carom_test::SeedRange seeds = carom_test::seeds_from(0, 400, 2000);
+  const int most = seeds.count() / 100;
+  for (const ForceRule rule : {ForceRule::trapezoidal, ForceRule::energy_momentum}) {
+    EXPECT_LE(count_failures(seeds, {.step = 2e-3, .force_rule = rule}, 4.0), most);
+  }
+  EXPECT_LE(count_failures(seeds, {.step = 2e-3, .impacts = ImpactTimes::located}, 4.0), most);
+}
+
+// Up to 1e8 N/m: 60 % failed at 2 ms, 24 of 2,000 do, with joints and torsional springs most of them. Where
+// impacts are located there are more contacts in a step.
 TEST(StruckCouplingsLong, RandomScenesRun) {
   const carom_test::SeedRange seeds = carom_test::seeds_from(0, 400, 2000);
   const int most = 1 + seeds.count() / 25;
