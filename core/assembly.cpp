@@ -170,7 +170,9 @@ void check_sizes(const Assembly& assembly, const State& state) {
                  sizes(state.q.size(), state.v.size(), state.z.size()),
                  sizes(layout.q_size(), layout.v_size(), layout.z_size()));
   }
-  if (state.layout() != nullptr && state.layout()->token() == layout.token()) return;
+  const Layout* const given = state.layout().get();
+  // One that was read elsewhere is of no system, but of these places.
+  if (given != nullptr && (given->token() == layout.token() || given->token() == none)) return;
   check.refuse("model", state.layout() == nullptr ? "none" : "another one", "a state of this model");
 }
 

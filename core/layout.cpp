@@ -54,6 +54,20 @@ Layout::Layout(int dimension, Index token, const std::vector<BodySlot>& bodies)
   }
 }
 
+bool Layout::has_places_of(const Layout& other) const {
+  const auto is_same = [](const BodySlot& a, const BodySlot& b) {
+    return a.serial == b.serial && a.q == b.q && a.v == b.v && a.q_size == b.q_size && a.v_size == b.v_size;
+  };
+  if (dimension_ != other.dimension_ || bodies_.size() != other.bodies_.size()) return false;
+  for (Index body = 0; body < bodies_.size(); ++body) {
+    if (!is_same(bodies_[body], other.bodies_[body])) return false;
+  }
+  return std::equal(internals_.begin(), internals_.end(), other.internals_.begin(), other.internals_.end(),
+                    [](const InternalSlot& a, const InternalSlot& b) {
+                      return a.serial == b.serial && a.first == b.first && a.size == b.size;
+                    });
+}
+
 void Layout::place_joints(std::shared_ptr<const JointTable> joints) { joints_ = std::move(joints); }
 
 void Layout::place_internals(std::vector<InternalSlot> internals) {

@@ -154,6 +154,8 @@ public:
   [[nodiscard]] const InternalSlot& internal(ElementId id) const;
   /// Joints by identity; null where there are none.
   [[nodiscard]] const JointTable* joints() const { return joints_.get(); }
+  /// True if bodies and internal variables have the same places in both.
+  [[nodiscard]] bool has_places_of(const Layout& other) const;
   /// Token of the system.
   [[nodiscard]] Index token() const { return token_; }
   /// True if the body is part of the model.

@@ -78,8 +78,7 @@ std::uint64_t checksum(std::string_view bytes) {
 
 }  // namespace
 
-void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const State& state,
-                     const Companion& companion) {
+std::string write_checkpoint(std::uint64_t fingerprint, const State& state, const Companion& companion) {
   CheckpointWriter out;
   out.add(fingerprint);
   out.add(state.time);
@@ -131,7 +130,12 @@ void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const S
   std::string content(mark);
   content.append(std::to_string(checkpoint_version)).append("\n");
   content.append(body).append(end.bytes().data(), end.bytes().size());
-  write_file(path, content, "checkpoint");
+  return content;
+}
+
+void save_checkpoint(const std::string& path, std::uint64_t fingerprint, const State& state,
+                     const Companion& companion) {
+  write_file(path, write_checkpoint(fingerprint, state, companion), "checkpoint");
 }
 
 namespace {
@@ -295,12 +299,16 @@ CheckpointContent checked_content(const std::string& path, std::string_view text
 }  // namespace
 
 void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& state, Companion& companion) {
-  const std::string content = read_file(path, "checkpoint");
-  const auto [version, body] = checked_content(path, content);
-  CheckpointReader in(path, body);
+  read_checkpoint(read_file(path, "checkpoint"), path, fingerprint, state, companion);
+}
+
+void read_checkpoint(std::string_view content, const std::string& origin, std::uint64_t fingerprint,
+                     State& state, Companion& companion) {
+  const auto [version, body] = checked_content(origin, content);
+  CheckpointReader in(origin, body);
   std::uint64_t found = 0;
   in.get(found);
-  if (found != fingerprint) throw FileError("checkpoint '" + path + "': is of another model");
+  if (found != fingerprint) throw FileError("checkpoint '" + origin + "': is of another model");
   State read = state;
   Companion other;
   in.get(read.time);
@@ -332,7 +340,7 @@ void load_checkpoint(const std::string& path, std::uint64_t fingerprint, State& 
   if (version >= 11) in.get(other.closings.steps_owed);
   if (version >= 14) read_closings(in, other.closings);
   in.finish();
-  demand_rhythms(path, other.rhythms, companion.rhythms);
+  demand_rhythms(origin, other.rhythms, companion.rhythms);
   state = std::move(read);
   companion = std::move(other);
 }

@@ -1,5 +1,6 @@
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/run_error.h>
+#include <carom/core/whole_file.h>
 #include <carom/integrators/checkpoint.h>
 #include <carom/integrators/mode_switch.h>
 #include <carom/integrators/progress_bar.h>
@@ -207,10 +208,16 @@ void Simulation::set_state(const State& state) {
   self.guard.demand("set_state", CallGuard::Need::no_reader);
   const CallGuard::Scope scope(self.guard, CallGuard::Caller::law);
   check_state(self.model->assembly, state);
-  if (state.layout() != self.state.layout() || state.z.size() != self.state.z.size()) {
-    throw ModelError("state: model is another one; allowed: a state of this simulation since its last edit");
+  const Layout &given = *state.layout(), &own = *self.state.layout();
+  if (&given != &own && !given.has_places_of(own)) {
+    throw ModelError(
+        "state: model is another one; allowed: a state of this model as it is since its last edit");
   }
-  State closed = state;
+  State closed = self.state;
+  closed.time = state.time;
+  closed.q = state.q;
+  closed.v = state.v;
+  closed.z = state.z;
   const double projected = self.model->prepare(closed).projected;
   const StoredEnergies stored = self.model->stored_energies(closed);
   self.report.projected = projected;
@@ -286,11 +293,32 @@ void Simulation::save(const std::string& path) const {
   if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
 }
 
-void Simulation::load(const std::string& path) {
-  impl_->guard.demand("load", CallGuard::Need::no_reader);
-  load_checkpoint(path, system().fingerprint(), impl_->state, impl_->companion);
+void Simulation::load(const std::string& path) { restore_from(read_file(path, "checkpoint"), path, "load"); }
+
+std::string Simulation::checkpoint() const {
+  impl_->guard.demand("checkpoint", CallGuard::Need::no_step);
+  const std::string made = write_checkpoint(system().fingerprint(), impl_->state, impl_->companion);
+  if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
+  return made;
+}
+
+void Simulation::restore(std::string_view checkpoint) { restore_from(checkpoint, "in memory", "restore"); }
+
+void Simulation::restore_from(std::string_view content, const std::string& origin, const char* call) {
+  impl_->guard.demand(call, CallGuard::Need::no_reader);
+  read_checkpoint(content, origin, system().fingerprint(), impl_->state, impl_->companion);
   if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
   impl_->grid().match(impl_->companion, impl_->state.time);
+}
+
+Simulation Simulation::copy() const {
+  impl_->guard.demand("copy", CallGuard::Need::no_step);
+  Simulation made(system(), mode());
+  Companion without_actions = impl_->companion;
+  without_actions.rhythms.clear();
+  made.restore(write_checkpoint(system().fingerprint(), impl_->state, without_actions));
+  if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
+  return made;
 }
 
 }  // namespace carom

@@ -19,6 +19,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -89,10 +90,12 @@ public:
   /// described. An error changes nothing. The change of the energy is booked as `intervention`. Throws
   /// ModelError for an empty function, and where another system was put in the place of the model.
   void edit(const std::function<void(System&)>& change);
-  /// Replaces the state (time included); positions and velocities are projected onto the joints. Throws
-  /// ModelError naming the body for numbers that are not finite. The change of the energy is booked as
-  /// `intervention`. The modes of contacts (stick, slip) are discarded: in the event-driven mode they are
-  /// computed from the state, in time stepping a contact sticks if its speed is exactly zero.
+  /// Replaces the state (time included) by one of any simulation of this model; positions and velocities are
+  /// projected onto the joints. Throws ModelError naming the body for numbers that are not finite, and for a
+  /// state of another model, or of this one before an edit that moved the places of its numbers. The change
+  /// of the energy is booked as `intervention`. The modes of contacts (stick, slip) are discarded: in the
+  /// event-driven mode they are computed from the state, in time stepping a contact sticks if its speed is
+  /// exactly zero.
   void set_state(const State& state);
   /// Continues in another mode, or with other options, from the same state. At a change from time stepping to
   /// the event-driven mode, bodies may have penetrated shapes on ground and each other: an impact is solved
@@ -154,8 +157,18 @@ public:
   /// (every()) must be the same. Throws FileError for a file that cannot be read or is of another model; the
   /// simulation is then unchanged.
   void load(const std::string& path);
+  /// What save() writes, as bytes.
+  [[nodiscard]] std::string checkpoint() const;
+  /// Loads what checkpoint() gave, as load() does a file. Throws FileError.
+  void restore(std::string_view checkpoint);
+  /// A simulation of the same model and mode in the same state, which continues bit for bit as this one does.
+  /// It has no observers, actions, events or log of this one. An event-driven run restarts its integrators,
+  /// as by save(). Throws ModelError where the model cannot begin at its described positions (after edits).
+  [[nodiscard]] Simulation copy() const;
 
 private:
+  void restore_from(std::string_view content, const std::string& origin, const char* call);
+
   struct Impl;
   Owner<Impl> impl_;
 };

@@ -9,6 +9,10 @@ import typing as _typing
 
 from . import planar, spatial, tables
 from ._core import *  # type: ignore[no-redef]  # noqa: F403  # it has modules planar, spatial, too
+from .ensemble import Failure as Failure
+from .ensemble import Runs as Runs
+from .ensemble import SerialExecutor as SerialExecutor
+from .ensemble import Trace as Trace
 from .recording import Recorder as Recorder
 from .recording import Recording as Recording
 from .recording import load_recording as load_recording
@@ -17,6 +21,7 @@ from .scene import SceneError as SceneError
 from .scene import load_scene as load_scene
 from .scene import save_scene as save_scene
 from .viewer import write_view as write_view
+from .ensemble import ensemble as ensemble  # the module has its name: last
 from ._missing import missing as _missing
 from ._signatures import install as _install
 from ._version import __version__ as __version__

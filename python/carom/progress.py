@@ -52,8 +52,8 @@ class _Tqdm:
 class _Line:
     """A line of text on the standard error, written over itself."""
 
-    def __init__(self, start: float, end: float) -> None:
-        self._start, self._end = start, end
+    def __init__(self, start: float, end: float, unit: str) -> None:
+        self._start, self._end, self._unit = start, end, unit
         self._begun = time.monotonic()
         self._last = ""
 
@@ -64,7 +64,7 @@ class _Line:
         if 0.0 < done < 1.0:
             left = f", {(time.monotonic() - self._begun) * (1.0 - done) / done:.0f} s left"
         bar = ("#" * round(done * _WIDTH)).ljust(_WIDTH)
-        line = f"[{bar}] {100.0 * done:3.0f} %  {reached:.6g} of {self._end:g} s{left}"
+        line = f"[{bar}] {100.0 * done:3.0f} %  {reached:.6g} of {self._end:g} {self._unit}{left}"
         print("\r" + line.ljust(len(self._last)), end="", file=sys.stderr, flush=True)
         self._last = line
 
@@ -73,8 +73,12 @@ class _Line:
             print(file=sys.stderr, flush=True)
 
 
-def begin(progress: Union[bool, Callable[[float], Any]], start: float, end: float) -> Shown:
-    """What shows a run between two times [s]: a function of the user, a bar of tqdm, or a line of text."""
+def begin(
+    progress: Union[bool, Callable[[float], Any]], start: float, end: float, unit: str = "s"
+) -> Shown:
+    """What shows a run between two times [s], or numbers of another unit: a function of the user, a bar of tqdm,
+    or a line of text.
+    """
     if not isinstance(progress, bool):
         return _Function(progress)
     try:
@@ -82,7 +86,7 @@ def begin(progress: Union[bool, Callable[[float], Any]], start: float, end: floa
             warnings.simplefilter("ignore")  # of widgets that a notebook lacks: it has a bar of text then
             from tqdm.auto import tqdm  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
-            form = "{l_bar}{bar}| {n:.6g}/{total:.6g} s [{elapsed}<{remaining}]"
+            form = f"{{l_bar}}{{bar}}| {{n:.6g}}/{{total:.6g}} {unit} [{{elapsed}}<{{remaining}}]"
             return _Tqdm(tqdm(total=end - start, bar_format=form), start)
     except ImportError:
-        return _Line(start, end)
+        return _Line(start, end, unit)

@@ -30,6 +30,22 @@ Runner::Runner(const Model& model, const Mode& mode) : journal_(model) {
   simulation_ = std::make_unique<Simulation>(model.system, mode);
   python_laws_ = !find_python_part(journal_).empty();
   warn();
+  watch_simulation();
+}
+
+Runner::Runner(const Journal& journal, Simulation simulation)
+    : journal_(journal), simulation_(std::make_unique<Simulation>(std::move(simulation))) {
+  python_laws_ = !find_python_part(journal_).empty();
+  static_cast<void>(simulation_->log());
+  watch_simulation();
+}
+
+Runner* Runner::copy() {
+  Simulation made = get().copy();
+  return new Runner(journal_, std::move(made));  // NOLINT(cppcoreguidelines-owning-memory): Python takes it
+}
+
+void Runner::watch_simulation() {
   simulation_->interrupt_when(
       [this] {
         watch_.look(simulation_->time());

@@ -27,6 +27,8 @@ void check_threads(const Journal& journal, const carom::Mode& mode);
 class Runner {
 public:
   Runner(const Model& model, const carom::Mode& mode);
+  /// Simulation::copy().
+  Runner(const Journal& journal, carom::Simulation simulation);
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
   ~Runner() = default;
@@ -60,6 +62,8 @@ public:
   [[nodiscard]] nb::object system();
   void edit(nb::handle change);
   void switch_to(const carom::Mode& mode);
+  /// Simulation::copy(), owned by whoever calls.
+  [[nodiscard]] Runner* copy();
   /// Keeps a function of the user until it is dropped; returns its number.
   std::size_t keep(nb::handle function);
   void drop(std::size_t number) { (void)kept_.extract(number); }  // freed once it is out of the list
@@ -89,6 +93,7 @@ private:
   };
   void check_thread() const;
   void warn();
+  void watch_simulation();
   [[nodiscard]] bool calls_python() const { return python_laws_ || !kept_.empty() || stop_; }
 
   Journal journal_;

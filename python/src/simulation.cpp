@@ -217,6 +217,24 @@ void bind_runs(Class& type) {
       .def(
           "load", [](Runner& self, nb::handle path) { self.get().load(path_of(path)); }, nb::arg("path"),
           nb::sig("def load(self, path: str | os.PathLike[str]) -> None"), doc("Simulation.load"))
+      .def(
+          "checkpoint",
+          [](Runner& self) {
+            const std::string made = self.get().checkpoint();
+            return nb::bytes(made.data(), made.size());
+          },
+          doc("Simulation.checkpoint"))
+      .def(
+          "restore",
+          [](Runner& self, const nb::bytes& checkpoint) {
+            self.get().restore({checkpoint.c_str(), checkpoint.size()});
+          },
+          nb::arg("checkpoint"), doc("Simulation.restore"))
+      .def("copy", &Runner::copy, nb::rv_policy::take_ownership, doc("Simulation.copy"))
+      .def("__copy__", &Runner::copy, nb::rv_policy::take_ownership)
+      .def(
+          "__deepcopy__", [](Runner& self, nb::handle /*memo*/) { return self.copy(); }, nb::arg("memo"),
+          nb::rv_policy::take_ownership)
       .def("set_log", &set_log, nb::arg("sink").none(), nb::arg("level") = "info",
            nb::sig("def set_log(self, sink: collections.abc.Callable[[LogLevel, str], typing.Any] | None, "
                    "level: LogLevel | str = 'info') -> None"),

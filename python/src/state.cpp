@@ -9,6 +9,10 @@
 #include <carom/core/state.h>
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/tuple.h>
+
+#include <cstring>
+#include <tuple>
 
 namespace carom_python {
 
@@ -56,6 +60,65 @@ void bind_array(nb::class_<State>& type, const char* name, const char* text) {
       name, [](nb::handle self) { return view(self, state_of(self).*member); },
       [path](State& self, nb::handle value) { assign(self.*member, value, path.c_str()); },
       nb::for_getter(nb::sig(getter.c_str())), nb::for_setter(nb::sig(setter.c_str())), text);
+}
+
+/// Numbers of places that travel with a state: BodySlot, then InternalSlot.
+constexpr std::size_t of_body = 8, of_internal = 3;
+
+nb::tuple packed(const State& state) {
+  if (state.layout() == nullptr) throw ModelError("state of no model: it cannot be pickled");
+  const Layout& layout = *state.layout();
+  std::vector<Index> places;
+  places.reserve(of_body * layout.bodies().size() + of_internal * layout.internals().size());
+  for (const BodySlot& at : layout.bodies()) {
+    places.insert(places.end(), {at.serial, at.q, at.v, at.q_size, at.v_size, at.rotation, at.kind, at.slot});
+  }
+  for (const InternalSlot& at : layout.internals()) {
+    places.insert(places.end(), {at.serial, at.first, at.size});
+  }
+  const auto bytes = [](const auto& numbers) {
+    return nb::bytes(numbers.data(), sizeof(numbers[0]) * numbers.size());
+  };
+  return nb::make_tuple(layout.dimension(), layout.bodies().size(), bytes(places), state.time, bytes(state.q),
+                        bytes(state.v), bytes(state.z));
+}
+
+template <class Number>
+std::vector<Number> numbers_of(const nb::bytes& bytes) {
+  std::vector<Number> numbers(bytes.size() / sizeof(Number));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.c_str(), sizeof(Number) * numbers.size());
+  return numbers;
+}
+
+using Packed = std::tuple<int, std::size_t, nb::bytes, double, nb::bytes, nb::bytes, nb::bytes>;
+
+/// A state of no system of this process: simulations of the same model take it.
+void unpack(State& self, const Packed& packed) {
+  const auto& [dimension, bodies, bytes, time, q, v, z] = packed;
+  const std::vector<Index> places = numbers_of<Index>(bytes);
+  const std::size_t of_bodies = of_body * bodies;
+  if (places.size() < of_bodies) throw ModelError("state: is damaged: ends too early");
+  std::vector<BodySlot> slots;
+  for (std::size_t i = 0; i < of_bodies; i += of_body) {
+    const Index* const at = places.data() + i;
+    slots.push_back({at[0], at[1], at[2], at[3], at[4], at[5], at[6], at[7]});
+  }
+  std::vector<InternalSlot> internals;
+  for (std::size_t i = of_bodies; i + of_internal <= places.size(); i += of_internal) {
+    internals.push_back({places[i], places[i + 1], places[i + 2]});
+  }
+  const auto layout = std::make_shared<Layout>(dimension, none, slots);
+  layout->place_internals(std::move(internals));
+  State made(layout);
+  made.time = time;
+  const std::pair<std::vector<double>*, const nb::bytes*> all[] = {
+      {&made.q, &q}, {&made.v, &v}, {&made.z, &z}};
+  for (const auto& [numbers, read] : all) {
+    const std::vector<double> given = numbers_of<double>(*read);
+    if (given.size() != numbers->size()) throw ModelError("state: is damaged: its sizes do not fit");
+    *numbers = given;
+  }
+  new (&self) State(std::move(made));
 }
 
 }  // namespace
@@ -120,6 +183,10 @@ void bind_state(nb::module_& core) {
           nb::sig("def internal(self, element: ElementId) -> numpy.typing.NDArray[numpy.float64]"),
           doc("State.internal"))
       .def("__copy__", [](const State& self) { return State(self); })
+      .def(
+          "__deepcopy__", [](const State& self, nb::handle /*memo*/) { return State(self); }, nb::arg("memo"))
+      .def("__getstate__", &packed, nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
+      .def("__setstate__", &unpack)
       .def("__repr__", [](const State& self) {
         return "State(time=" + nb::cast<std::string>(nb::repr(nb::float_(self.time))) + ", " +
                std::to_string(self.q.size()) + " coordinates)";

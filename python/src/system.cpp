@@ -372,6 +372,20 @@ void bind_system(nb::module_& core) {
              self.get();
              return Model(self);
            })
+      .def(
+          "__deepcopy__",
+          [](Model& self, nb::handle /*memo*/) {
+            self.get();
+            return Model(self);
+          },
+          nb::arg("memo"))
+      .def("__getstate__",
+           [](nb::handle self) { return nb::module_::import_("carom.travel").attr("packed_system")(self); })
+      .def("__setstate__",
+           [](Model& self, nb::handle packed) {
+             const nb::object made = nb::module_::import_("carom.travel").attr("unpacked_system")(packed);
+             new (&self) Model(nb::cast<Model&>(made));
+           })
       .def_rw(
           "title", &Model::title,
           "What the model is called where it is shown; load_scene() gives the name of the file. No part of "

@@ -86,6 +86,61 @@ TEST_F(Checkpoint, ContinuesBitForBit) {
   }
 }
 
+// Without a file: the same bytes; a copy of a simulation goes on as the first one, and has none of its
+// callbacks.
+TEST_F(Checkpoint, BytesAndCopiesContinueBitForBit) {
+  for (const Mode& mode : {Mode(TimeStepping{.step = 1e-3}), Mode(EventDriven{})}) {
+    for (const double time : {0.0, 0.1, 0.73219, 1.5}) {
+      Simulation whole(scene(), mode);
+      int calls = 0;
+      whole.observe([&](const Simulation&) { ++calls; });
+      whole.every(0.25, [](Simulation&) {});
+      whole.run_until(time);
+      Simulation copy = whole.copy();
+      const int before = calls;
+      whole.save(path_);
+      const std::string made = whole.checkpoint();
+      EXPECT_EQ(std::vector<char>(made.begin(), made.end()), bytes());
+      Simulation fresh(scene(), mode);
+      fresh.observe([](const Simulation&) {});  // an event-driven run that is observed ends its intervals
+      fresh.every(0.25, [](Simulation&) {});
+      fresh.restore(made);
+      for (Simulation* const other : {&copy, &fresh}) other->run_until(time);
+      EXPECT_EQ(bits_of(copy), bits_of(whole)) << time;
+      copy.run_until(2.0);
+      EXPECT_EQ(calls, before);
+      fresh.run_until(2.0);
+      whole.run_until(2.0);
+      EXPECT_EQ(bits_of(fresh), bits_of(whole)) << time;
+    }
+  }
+}
+
+TEST_F(Checkpoint, WrongBytesChangeNothing) {
+  Simulation whole(scene(), TimeStepping{.step = 1e-3});
+  whole.run_until(0.5);
+  const auto before = bits_of(whole);
+  std::string made = whole.checkpoint();
+  made[made.size() / 2] = static_cast<char>(made[made.size() / 2] + 1);
+  for (const std::string& wrong : {std::string(), std::string("nothing"), made, made.substr(0, 20)}) {
+    EXPECT_THROWS(FileError, whole.restore(wrong), "in memory");
+  }
+  EXPECT_EQ(bits_of(whole), before);
+}
+
+TEST_F(Checkpoint, AStateFitsEverySimulationOfItsModel) {
+  const System system = scene();
+  Simulation one(system, TimeStepping{.step = 1e-3}), two(system, EventDriven{}),
+      other(scene(), TimeStepping{});
+  one.run_until(0.4);
+  two.set_state(one.state());
+  EXPECT_EQ(two.state().q, one.state().q);
+  EXPECT_THROWS(ModelError, other.set_state(one.state()), "state", "another one");
+  // Behind an edit the numbers of a state have other places.
+  two.edit([](System& edited) { edited.add(Particle{.mass = 1.0, .position = {9.0, 9.0}}); });
+  EXPECT_THROWS(ModelError, two.set_state(one.state()), "state");
+}
+
 // Discs that meet, and fall on the plane, by every method: of the steps ahead of the state nothing is left.
 TEST_F(Checkpoint, ContinuesBitForBitFromEventToEvent) {
   const auto discs = [](System& system) {

@@ -130,11 +130,12 @@ def to_dict(
     data.update(_write_sections(scene, data["space"], names))
     data.update(_write_contacts(scene, names))
     if mode is not None:
-        data["simulation"] = _write_simulation(mode, until, names)
+        data["simulation"] = write_simulation(mode, until, names)
     return data
 
 
-def _write_simulation(mode: Mode, until: Optional[float], names: Names) -> Data:
+def write_simulation(mode: Mode, until: Optional[float], names: Names) -> Data:
+    """Section `simulation` of a mode."""
     word = next(word for word, name in MODES.items() if name == type(mode).__name__)
     made: Data = {"mode": word}
     options = record(MODES[word]).write(mode, ("simulation", "options"), names)
@@ -243,7 +244,8 @@ def _read_contacts(data: Data, system: _core.System, names: Names) -> None:
         system.close_joints(Boolean().read(data["close_joints"], ("close_joints",), names))
 
 
-def _read_simulation(value: Any, names: Names) -> tuple[Mode, Optional[float]]:
+def read_simulation(value: Any, names: Names) -> tuple[Mode, Optional[float]]:
+    """Mode and end of a section `simulation`. Raises SceneError."""
     path: Path = ("simulation",)
     demand_fields(_object(value, path), ("mode", "options", "until"), ("mode",), path, "the simulation")
     word = one_of(value["mode"], MODES, (*path, "mode"))
@@ -263,6 +265,11 @@ def _read_simulation(value: Any, names: Names) -> tuple[Mode, Optional[float]]:
 
 def from_dict(data: Any) -> Scene:
     """Scene of the data of a scene file. Raises SceneError with the field that is wrong."""
+    return read_scene(data, _core.System())
+
+
+def read_scene(data: Any, system: _core.System) -> Scene:
+    """from_dict() into a system that is empty."""
     _object(data, ())
     if "carom" not in data:
         raise SceneError("a scene needs the field 'carom', the version of its form: \"carom\": 1")
@@ -277,7 +284,7 @@ def from_dict(data: Any) -> Scene:
         )
     demand_fields(data, KEYS, (), (), "a scene")
     space = one_of(data.get("space", SPACES[0]), SPACES, ("space",))
-    system, names = _core.System(), Names()
+    names = Names()
     _read_laws(data, system, names)
     for section in SECTIONS.values():
         for i, value in enumerate(_list(data, section)):
@@ -285,4 +292,4 @@ def from_dict(data: Any) -> Scene:
     _read_contacts(data, system, names)
     if "simulation" not in data:
         return Scene(system)
-    return Scene(system, *_read_simulation(data["simulation"], names))
+    return Scene(system, *read_simulation(data["simulation"], names))

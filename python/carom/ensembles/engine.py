@@ -1,0 +1,166 @@
+"""Sends runs in batches to anything that has `submit` of concurrent.futures, and takes what comes back."""
+
+from __future__ import annotations
+
+import concurrent.futures as futures
+import os
+import signal
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures.process import BrokenProcessPool
+from typing import Any, Optional
+
+from .points import Points
+from .task import Failure, Rows, Task, run_batch
+
+_BATCH_TIME = 0.2  # of a batch [s]: a message costs a millisecond
+_GRACE = 1.0  # for batches that are under way when the user ends it [s]
+_MOST_RUNS = 20000  # in a batch
+_GROWTH = 8  # of batches, from one to the next, until their time is known
+
+
+class SerialExecutor(futures.Executor):
+    """Runs everything here, at once: an executor for debugging, and the one process of comparisons."""
+
+    def submit(self, function: Any, /, *arguments: Any, **named: Any) -> futures.Future[Any]:
+        future: futures.Future[Any] = futures.Future()
+        try:
+            future.set_result(function(*arguments, **named))
+        except BaseException as error:  # noqa: BLE001: it comes out where the result is asked for
+            future.set_exception(error)
+        return future
+
+
+def _ignore_interrupts() -> None:
+    """Ctrl-C reaches all processes of a terminal; the one that has the others ends them."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+class Engine:
+    """An executor, its own processes if none is given, and the batches that it has."""
+
+    def __init__(self, executor: Any, task: Task, points: Points) -> None:
+        """executor: with submit(); a number of processes; None: as many processes as the machine has cores."""
+        self._task, self._points = task, points
+        self._processes = executor if isinstance(executor, int) else None if executor is not None else _cores()
+        if self._processes is not None and self._processes < 1:
+            raise ValueError(f"ensemble: executor is {executor} processes; allowed: one at least")
+        self._executor = self._own() if self._processes is not None else executor
+        workers = self._processes or getattr(executor, "_max_workers", None) or _cores()
+        # Two batches each, so that none waits; of a serial executor each is done when it is sent.
+        self._most_sent = 1 if isinstance(executor, SerialExecutor) else 2 * workers + 2
+        self._seconds_of_run: Optional[float] = None
+        self._size = 1
+        self.interrupted = False
+
+    def _own(self) -> futures.ProcessPoolExecutor:
+        return futures.ProcessPoolExecutor(self._processes, initializer=_ignore_interrupts)
+
+    def results(self, runs: Iterator[int]) -> Iterator[Rows]:
+        """Rows of all runs, as they come. Ends early, `interrupted`, on Ctrl-C."""
+        waiting: deque[list[int]] = deque()
+        sent: dict[futures.Future[Any], list[int]] = {}
+        try:
+            while True:
+                while len(sent) < self._most_sent:
+                    batch = waiting.popleft() if waiting else self._next(runs)
+                    if not batch:
+                        break
+                    self._send(batch, sent, waiting)
+                if not sent:
+                    return
+                done, _ = futures.wait(sent, return_when=futures.FIRST_COMPLETED)
+                for future in done:
+                    batch = sent.pop(future)
+                    rows = self._taken(future, batch, sent, waiting)
+                    if rows is None:
+                        continue
+                    self._learn(rows)
+                    yield rows
+                    if rows.interrupted:
+                        raise KeyboardInterrupt
+        except KeyboardInterrupt:
+            self.interrupted = True
+            yield from self._rest(sent)
+        finally:
+            self._end(sent)
+
+    def _end(self, sent: dict[Any, list[int]]) -> None:
+        """Ends what is still under way, and the processes of its own."""
+        for future in sent:
+            future.cancel()
+        if self._processes is None:
+            return
+        running = list((getattr(self._executor, "_processes", None) or {}).values()) if sent else []
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        for process in running:  # they ignore Ctrl-C, and a run may take hours
+            process.terminate()
+
+    def _send(self, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]) -> None:
+        points = [self._points[run] for run in batch]
+        try:
+            sent[self._executor.submit(run_batch, self._task, batch, points)] = batch
+        except BrokenProcessPool:
+            if self._processes is None:
+                raise
+            self._executor = self._own()
+            waiting.appendleft(batch)
+
+    def _next(self, runs: Iterator[int]) -> list[int]:
+        size = self._size
+        batch = []
+        for run in runs:
+            batch.append(run)
+            if len(batch) == size:
+                break
+        return batch
+
+    def _learn(self, rows: Rows) -> None:
+        """Chooses how many runs take the time of a batch."""
+        if not rows.runs:
+            return
+        of_run = max(rows.seconds / len(rows.runs), 1e-7)
+        # Runs differ; of the slower ones a batch may last longer.
+        before = self._seconds_of_run
+        self._seconds_of_run = of_run if before is None else 0.8 * before + 0.2 * of_run
+        wanted = int(_BATCH_TIME / self._seconds_of_run)
+        self._size = max(1, min(wanted, _GROWTH * self._size, _MOST_RUNS))
+
+    def _taken(
+        self, future: Any, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]
+    ) -> Optional[Rows]:
+        """Rows of a batch; None where its process ended and it is sent again."""
+        try:
+            rows: Rows = future.result()
+            return rows
+        except BrokenProcessPool:
+            if self._processes is None:
+                raise
+            # Every batch that was under way is lost. Which run ends the process shows where each is alone.
+            if len(batch) == 1 and not sent:
+                point = dict(zip(self._points.names, self._points[batch[0]]))
+                failure = Failure(
+                    batch[0], point, "its process ended", "BrokenProcessPool", [], float("nan")
+                )
+                self._executor = self._own()
+                return Rows([batch[0]], [None], [failure])
+            lost = [batch, *sent.values()]
+            sent.clear()
+            self._executor = self._own()
+            self._most_sent = 1  # from now on one batch at a time, and those that were lost run by run
+            waiting.extend([run] for runs in lost for run in runs)
+            return None
+
+    def _rest(self, sent: dict[Any, list[int]]) -> Iterator[Rows]:
+        """What is done of what was sent when the user ended it, or soon after."""
+        for future in list(sent):
+            future.cancel()
+        futures.wait(sent, timeout=_GRACE)
+        for future in list(sent):
+            if future.done() and not future.cancelled() and future.exception() is None:
+                yield future.result()
+                del sent[future]
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

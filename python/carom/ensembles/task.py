@@ -1,0 +1,216 @@
+"""What is done for every run, here or in another process."""
+
+from __future__ import annotations
+
+import copy
+import functools
+import hashlib
+import inspect
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Optional, Union
+
+import numpy
+
+from .. import _core
+from .._version import __version__
+from ..scene import Scene, SceneError, load_scene, to_dict
+from ..scene.build import Mode
+from ..scene.files import text_of
+from ..travel import pack_mode, unpack_mode
+from .outputs import Outputs
+from .points import Point
+from .template import Template
+
+Model = Union[_core.System, Scene, str, "os.PathLike[str]", Callable[..., Any]]
+
+
+_NO_MODE = "ensemble: the model has no mode; give mode=TimeStepping(...) or EventDriven(...)"
+
+
+class WrongCall(_core.ModelError):
+    """What is wrong with every run, and not with the parameters of one."""
+
+
+@dataclass
+class Failure:
+    """A run that did not end well. parts: those of a SolverError, the worst first. time: of its last good
+    state [s], NaN where it did not begin.
+    """
+
+    run: int
+    parameters: dict[str, Any]
+    message: str
+    kind: str
+    parts: list[str]
+    time: float
+
+
+@dataclass
+class Rows:
+    """Results of some runs, in their order: values of the outputs, None where the run failed."""
+
+    runs: list[int]
+    values: list[Optional[list[Any]]]
+    failures: list[Failure] = field(default_factory=list)
+    seconds: float = 0.0
+    interrupted: bool = False
+
+
+def _data_of(model: Any) -> dict[str, Any]:
+    """Data of a scene file. Raises ModelError for a model that no scene file can have."""
+    if isinstance(model, (str, os.PathLike)):
+        model = load_scene(model)
+    try:
+        return to_dict(model)
+    except SceneError as error:
+        raise _core.ModelError(
+            f"ensemble: the model cannot travel: {error}; allowed: parts that a scene file can have, or an importable "
+            "function of the parameters that makes the system"
+        ) from error
+
+
+def _check_function(model: Callable[..., Any], names: list[str]) -> None:
+    """Demands a function that other processes can import, and that takes the parameters."""
+    where, name = getattr(model, "__module__", None), getattr(model, "__qualname__", "")
+    if where is None or "<" in name:
+        raise _core.ModelError(
+            f"ensemble: the model is {name or model!r}, which other processes cannot import; allowed: a function on the "
+            "first level of a module"
+        )
+    signature = inspect.signature(model)
+    takes_all = any(one.kind is one.VAR_KEYWORD for one in signature.parameters.values())
+    for given in names:
+        if given and given not in signature.parameters and not takes_all:
+            known = ", ".join(signature.parameters)
+            raise _core.ModelError(f"parameter {given!r}: {name}() has none of that name; allowed: {known}")
+
+
+def _with_mode(data: dict[str, Any], mode: Optional[dict[str, Any]]) -> dict[str, Any]:
+    """Data of a scene with another mode, if there is one, until when it says. Raises WrongCall without any."""
+    own = data.get("simulation")
+    if mode is None and own is None:
+        raise WrongCall(_NO_MODE)
+    if mode is None or own is None or "until" not in own:
+        return data if mode is None else {**data, "simulation": mode}
+    return {**data, "simulation": {**mode, "until": own["until"]}}
+
+
+class Task:
+    """A run of an ensemble, by its number and its parameters. Can be pickled."""
+
+    def __init__(
+        self,
+        model: Model,
+        names: list[str],
+        mode: Optional[Mode],
+        until: Optional[float],
+        outputs: Outputs,
+        seed: int,
+    ) -> None:
+        """names: of the parameters. Raises ModelError."""
+        self.names, self.outputs, self.until, self.seed = names, outputs, until, seed
+        self._mode = None if mode is None else pack_mode(mode)
+        self._function: Optional[Callable[..., Any]] = None
+        self._data: Optional[dict[str, Any]] = None
+        if callable(model) and not isinstance(model, (_core.System, Scene)):
+            _check_function(model, names)
+            self._function = model
+        else:
+            self._data = _data_of(model)
+            self._data = _with_mode(self._data, self._mode)
+            self._template  # raises where a path is wrong
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_template"}
+
+    @functools.cached_property
+    def _template(self) -> Template:
+        return Template(self._data or {}, [name for name in self.names if name])
+
+    def fingerprint(self) -> dict[str, str]:
+        """What it does, in parts, so that it can be said which of them is another."""
+        model = text_of(self._data) if self._data is not None else self._source()
+        return {
+            "model": hashlib.sha256(model.encode()).hexdigest()[:16],
+            "mode and end": hashlib.sha256(repr((self._mode, self.until)).encode()).hexdigest()[:16],
+            "outputs": hashlib.sha256(self.outputs.fingerprint().encode()).hexdigest()[:16],
+            "seed": str(self.seed),
+            "version of carom": __version__,
+        }
+
+    def _source(self) -> str:
+        function: Any = self._function
+        try:
+            text = inspect.getsource(function)
+        except (OSError, TypeError):
+            text = ""
+        return f"{function.__module__}.{function.__qualname__}\n{text}"
+
+    def begin(self, run: int, point: Point) -> tuple[_core.Simulation, _core.System, float]:
+        """Simulation of a run at its start, its system, and when it ends. Raises what making it raises."""
+        if self._function is None:
+            given = point if self.names != [""] else ()
+            system, mode, until = self._template.make(given)
+        else:
+            system, mode, until = self._made(run, point)
+        until = self.until if self.until is not None else until
+        if until is None:
+            raise WrongCall("ensemble: the model does not say until when to run; give until=")
+        if mode is None:
+            raise WrongCall(_NO_MODE)
+        return _core.Simulation(system, mode), system, float(until)
+
+    def _made(self, run: int, point: Point) -> tuple[Any, Any, Optional[float]]:
+        """System, mode and end of what the function of the user makes."""
+        function: Any = self._function
+        given = {name: value for name, value in zip(self.names, point) if name}
+        if "rng" in inspect.signature(function).parameters and "rng" not in given:
+            given["rng"] = self.random(run)
+        made: Any = function(**given)
+        mode = None if self._mode is None else unpack_mode(self._mode)
+        end: Optional[float] = None
+        if isinstance(made, Scene):
+            made, mode, end = made.system, mode or made.mode, made.until
+        elif not isinstance(made, _core.System):
+            raise WrongCall(f"ensemble: the model's function gave {made!r}; allowed: a System or a Scene")
+        if mode is None:
+            raise WrongCall(_NO_MODE)
+        return made, mode, end
+
+    def random(self, run: int) -> numpy.random.Generator:
+        """The random numbers of a run: the same on every engine, in any order."""
+        return numpy.random.default_rng(numpy.random.SeedSequence(self.seed, spawn_key=(run,)))
+
+    def run(self, run: int, point: Point) -> Union[list[Any], Failure]:
+        """One run: the values of the outputs, or how it failed."""
+        reached = float("nan")
+        simulation = None
+        try:
+            simulation, system, until = self.begin(run, point)
+            return self.outputs.run(simulation, system, until)
+        except Exception as error:  # noqa: BLE001: of a row, whatever it is
+            if simulation is not None:
+                reached = simulation.time()
+            parts = list(error.parts) if isinstance(error, _core.SolverError) else []
+            shown = dict(zip(self.names, point))
+            return Failure(run, shown, str(error), type(error).__name__, parts, reached)
+
+
+def run_batch(task: Task, runs: Sequence[int], points: Sequence[Point]) -> Rows:
+    """Some runs, one after the other. Where Ctrl-C ends them, those that were done."""
+    begun = time.perf_counter()
+    rows = Rows([], [])
+    try:
+        for run, point in zip(runs, points):
+            result = task.run(run, point)
+            rows.runs.append(run)
+            rows.values.append(None if isinstance(result, Failure) else result)
+            if isinstance(result, Failure):
+                rows.failures.append(result)
+    except KeyboardInterrupt:
+        rows.interrupted = True
+    rows.seconds = time.perf_counter() - begun
+    return rows
