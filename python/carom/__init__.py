@@ -13,6 +13,11 @@ from .ensemble import Failure as Failure
 from .ensemble import Runs as Runs
 from .ensemble import SerialExecutor as SerialExecutor
 from .ensemble import Trace as Trace
+from .identify import AtImpact as AtImpact
+from .identify import Free as Free
+from .identify import Identified as Identified
+from .identify import Measured as Measured
+from .identify import MeasuredImpacts as MeasuredImpacts
 from .recording import Recorder as Recorder
 from .recording import Recording as Recording
 from .recording import load_recording as load_recording
@@ -21,7 +26,8 @@ from .scene import SceneError as SceneError
 from .scene import load_scene as load_scene
 from .scene import save_scene as save_scene
 from .viewer import write_view as write_view
-from .ensemble import ensemble as ensemble  # the module has its name: last
+from .ensemble import ensemble as ensemble  # the modules have their names: last
+from .identify import identify as identify
 from ._missing import missing as _missing
 from ._signatures import install as _install
 from ._version import __version__ as __version__

@@ -4,6 +4,8 @@
     carom check scene.json
     carom view run.h5
     carom import robot.urdf scene.json
+    carom sweep scene.json --vary surface.floor.friction=0:1:11 --output energy.total
+    carom fit scene.json flashes.csv --free surface.floor.friction=0.4 --error body.ball.position=1e-3
     carom schema
 
 The exit codes are in EXIT_CODES, which `--help` shows.
@@ -257,6 +259,8 @@ def arguments() -> argparse.ArgumentParser:
     command.add_argument("scene", type=Path, metavar="scene.json")
     command.add_argument("--plane", choices=list(PLANES), default="xz", help="right and up; xz if not given")
     command.set_defaults(action=convert, parser=command)
+
+    _part("ensembles.commands").add_commands(commands, _seconds)
 
     command = commands.add_parser(
         "schema", help="print the JSON schema of scenes", description=print_schema.__doc__, **texts

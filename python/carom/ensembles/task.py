@@ -10,7 +10,7 @@ import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union
+from typing import Any, Optional, Protocol, Union
 
 import numpy
 
@@ -20,7 +20,6 @@ from ..scene import Scene, SceneError, load_scene, to_dict
 from ..scene.build import Mode
 from ..scene.files import text_of
 from ..travel import pack_mode, unpack_mode
-from .outputs import Outputs
 from .points import Point
 from .template import Template
 
@@ -28,6 +27,18 @@ Model = Union[_core.System, Scene, str, "os.PathLike[str]", Callable[..., Any]]
 
 
 _NO_MODE = "ensemble: the model has no mode; give mode=TimeStepping(...) or EventDriven(...)"
+
+
+class Reads(Protocol):
+    """What is done with the simulation of a run: outputs, or a comparison."""
+
+    names: list[str]
+
+    def fingerprint(self) -> str:
+        """Tells another one from it."""
+
+    def run(self, simulation: _core.Simulation, system: _core.System, until: float) -> list[Any]:
+        """Runs to the end; a value for each name."""
 
 
 class WrongCall(_core.ModelError):
@@ -107,7 +118,7 @@ class Task:
         names: list[str],
         mode: Optional[Mode],
         until: Optional[float],
-        outputs: Outputs,
+        outputs: Reads,
         seed: int,
     ) -> None:
         """names: of the parameters. Raises ModelError."""
