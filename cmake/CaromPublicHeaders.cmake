@@ -4,6 +4,7 @@ set(carom_public_headers
     analysis/cross_check.h
     analysis/equilibrium.h
     analysis/inverse_dynamics.h
+    analysis/many_runs.h
     analysis/modes.h
     bodies/mass_properties.h
     bodies/particle.h
