@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 source scripts/compiler_cache.sh
 
-scripts/python_environment.sh pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel tqdm
+scripts/python_environment.sh pytest h5py jsonschema pandas mypy nbclient nbformat ipykernel tqdm scipy matplotlib pyarrow 'dask[distributed]'
 venv="$PWD/build/python-test"
 # Reads what carom.vtk writes; there is not one for every Python.
 flock build/python.lock "$venv/bin/pip" -q install vtk || echo "python.sh: without VTK its test is left out" >&2
