@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import concurrent.futures as futures
 import os
 import signal
 from collections import deque
-from collections.abc import Callable, Iterator
-from concurrent.futures.process import BrokenProcessPool
-from typing import Any, Optional
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Optional
+
+if TYPE_CHECKING:  # an import of carom would pay for them
+    from concurrent.futures import Future, ProcessPoolExecutor
 
 from .points import Points
 from .task import Failure, Rows, Task, run_batch
@@ -19,11 +20,14 @@ _MOST_RUNS = 20000  # in a batch
 _GROWTH = 8  # of batches, from one to the next, until their time is known
 
 
-class SerialExecutor(futures.Executor):
+class SerialExecutor:
     """Runs everything here, at once: an executor for debugging, and the one process of comparisons."""
 
-    def submit(self, function: Any, /, *arguments: Any, **named: Any) -> futures.Future[Any]:
-        future: futures.Future[Any] = futures.Future()
+    def submit(self, function: Any, /, *arguments: Any, **named: Any) -> Future[Any]:
+        """The result of a call, which is made now."""
+        from concurrent.futures import Future
+
+        future: Future[Any] = Future()
         try:
             future.set_result(function(*arguments, **named))
         except BaseException as error:  # noqa: BLE001: it comes out where the result is asked for
@@ -53,11 +57,15 @@ class Engine:
         self._size = 1
         self.interrupted = False
 
-    def _own(self) -> futures.ProcessPoolExecutor:
-        return futures.ProcessPoolExecutor(self._processes, initializer=_ignore_interrupts)
+    def _own(self) -> ProcessPoolExecutor:
+        from concurrent.futures import ProcessPoolExecutor
+
+        return ProcessPoolExecutor(self._processes, initializer=_ignore_interrupts)
 
     def results(self, runs: Iterator[int]) -> Iterator[Rows]:
         """Rows of all runs, as they come. Ends early, `interrupted`, on Ctrl-C."""
+        from concurrent import futures
+
         waiting: deque[list[int]] = deque()
         sent: dict[futures.Future[Any], list[int]] = {}
         try:
@@ -97,6 +105,8 @@ class Engine:
             process.terminate()
 
     def _send(self, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]) -> None:
+        from concurrent.futures.process import BrokenProcessPool
+
         points = [self._points[run] for run in batch]
         try:
             sent[self._executor.submit(run_batch, self._task, batch, points)] = batch
@@ -130,6 +140,8 @@ class Engine:
         self, future: Any, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]
     ) -> Optional[Rows]:
         """Rows of a batch; None where its process ended and it is sent again."""
+        from concurrent.futures.process import BrokenProcessPool
+
         try:
             rows: Rows = future.result()
             return rows
@@ -153,6 +165,8 @@ class Engine:
 
     def _rest(self, sent: dict[Any, list[int]]) -> Iterator[Rows]:
         """What is done of what was sent when the user ended it, or soon after."""
+        from concurrent import futures
+
         for future in list(sent):
             future.cancel()
         futures.wait(sent, timeout=_GRACE)

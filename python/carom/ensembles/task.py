@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import functools
 import hashlib
-import inspect
 import os
 import time
 from collections.abc import Callable, Sequence
@@ -91,6 +90,8 @@ def _check_function(model: Callable[..., Any], names: list[str]) -> None:
             f"ensemble: the model is {name or model!r}, which other processes cannot import; allowed: a function on the "
             "first level of a module"
         )
+    import inspect
+
     signature = inspect.signature(model)
     takes_all = any(one.kind is one.VAR_KEYWORD for one in signature.parameters.values())
     for given in names:
@@ -153,6 +154,8 @@ class Task:
         }
 
     def _source(self) -> str:
+        import inspect
+
         function: Any = self._function
         try:
             text = inspect.getsource(function)
@@ -176,6 +179,8 @@ class Task:
 
     def _made(self, run: int, point: Point) -> tuple[Any, Any, Optional[float]]:
         """System, mode and end of what the function of the user makes."""
+        import inspect
+
         function: Any = self._function
         given = {name: value for name, value in zip(self.names, point) if name}
         if "rng" in inspect.signature(function).parameters and "rng" not in given:
