@@ -7,6 +7,7 @@ import { layer, QUAD, repeated, vertices } from "./layers.js";
 
 const HALF_LINE = 0.7; // pixels of the line around a polygon on either side of its edge
 const OUTSIDE = HALF_LINE + 0.5; // and what it covers in part
+const WIDTH = 10; // numbers of a vertex of fan()
 const LONGEST = 3; // of a corner that is sharp, in widths of what is outside
 
 /** Discs and capsules: [{pose, ax, ay, bx, by, radius, fill}]. A radius shows how a disc turns. */
@@ -88,41 +89,44 @@ void main() {
 }
 
 /** Convex polygons: [{pose, points, fill}] with points counter-clockwise. Each is a fan of triangles around its middle,
- * in which the distance from the edge goes on straight, from the outside of the line to the middle. */
+ * in which distances from the edge and from its neighbours go on straight, from the outside of the line to the middle: of a
+ * long polygon the triangle of an edge reaches far along the next one. */
 export function polygons(list, edge, uniforms, order) {
   const fans = list.map(({ points }) => fan(points));
-  const count = fans.reduce((sum, { length }) => sum + length / 5, 0);
-  const place = new Float32Array(5 * count), pose = new Float32Array(count), fill = new Float32Array(3 * count);
+  const count = fans.reduce((sum, { length }) => sum + length / WIDTH, 0);
+  const place = new Float32Array(WIDTH * count), pose = new Float32Array(count), fill = new Float32Array(3 * count);
   let next = 0;
   fans.forEach((numbers, item) => {
-    place.set(numbers, 5 * next);
-    for (let i = 0; i < numbers.length / 5; ++i, ++next) {
+    place.set(numbers, WIDTH * next);
+    for (let i = 0; i < numbers.length / WIDTH; ++i, ++next) {
       pose[next] = list[item].pose;
       fill.set(list[item].fill, 3 * next);
     }
   });
   const column = (from, width) => [
-    Float32Array.from({ length: width * count }, (_, i) => place[5 * Math.floor(i / width) + from + (i % width)]), width];
-  const attributes = { at: column(0, 2), reach: column(2, 2), height: column(4, 1), pose: [pose, 1], fill: [fill, 3] };
+    Float32Array.from({ length: width * count }, (_, i) => place[WIDTH * Math.floor(i / width) + from + (i % width)]), width];
+  const attributes = { at: column(0, 2), reach: column(2, 2), heights: column(4, 3), slopes: column(7, 3), pose: [pose, 1], fill: [fill, 3] };
   return layer(vertices(count, attributes), { ...uniforms, edge: { value: edge } }, `
-in vec2 at; in vec2 reach; in float height; in float pose; in vec3 fill;
-out float depth; flat out vec3 inside;
+in vec2 at; in vec2 reach; in vec3 heights; in vec3 slopes; in float pose; in vec3 fill;
+out vec3 depths; flat out vec3 inside;
 void main() {
-  depth = height > 0.0 ? height / pixel : -${OUTSIDE.toFixed(2)};
+  depths = heights / pixel - ${OUTSIDE.toFixed(2)} * slopes;
   inside = picked == pose ? pickedColour : fill;
   vec2 local = at + ${OUTSIDE.toFixed(2)} * pixel * reach;
   gl_Position = projectionMatrix * viewMatrix * vec4(inScene(pose, local), 1.0);
 }`, `
-in float depth; flat in vec3 inside;
+in vec3 depths; flat in vec3 inside;
 uniform vec3 edge;
 void main() {
+  float depth = min(depths.x, min(depths.y, depths.z));
   float isEdge = clamp(${OUTSIDE.toFixed(2)} - depth, 0.0, 1.0);
   paint = vec4(mix(inside, edge, isEdge), clamp(${OUTSIDE.toFixed(2)} + depth, 0.0, 1.0));
 }`, order);
 }
 
 /** Triangles of a polygon, three vertices of each edge: place, direction to the outside of its line (which is as long
- * as the corner is sharp), distance from the edge. */
+ * as the corner is sharp), distances from the edge before, from this one and from the next, by how much that direction leads
+ * out of them. */
 function fan(points) {
   const corners = [];
   for (let i = 0; i < points.length; i += 2) {
@@ -139,9 +143,11 @@ function fan(points) {
     const way = [scale * (x + u), scale * (y + v)], length = Math.hypot(...way);
     return way.map((value) => value * Math.min(1, LONGEST / length));
   });
-  return normals.flatMap(([x, y], i) => {
-    const k = (i + 1) % count, [a, b] = [corners[i], corners[k]];
-    const height = x * (a[0] - middle[0]) + y * (a[1] - middle[1]);
-    return [...middle, 0, 0, height, ...a, ...outwards[i], 0, ...b, ...outwards[k], 0];
+  return normals.flatMap((_, i) => {
+    const before = (i + count - 1) % count, next = (i + 1) % count, edges = [before, i, next];
+    const height = (at, j) => normals[j][0] * (corners[j][0] - at[0]) + normals[j][1] * (corners[j][1] - at[1]);
+    const vertex = (at, way) => [
+      ...at, ...way, ...edges.map((j) => height(at, j)), ...edges.map((j) => normals[j][0] * way[0] + normals[j][1] * way[1])];
+    return [vertex(middle, [0, 0]), vertex(corners[i], outwards[i]), vertex(corners[next], outwards[next])].flat();
   });
 }

@@ -139,6 +139,7 @@ def test_events_are_listed_and_jumped_to(show):
         assert row.text.startswith(f"{events['time'][number]:.5f} s\nimpact")
         assert "particle 'ball' on half-plane 'floor'" in row.text
         row.click()
+        page.settle()
         assert page.time() == events["time"][number]
         marked = page.driver.find_elements(By.CSS_SELECTOR, ".event.current")
         assert [each.get_attribute("data-event") for each in marked] == [str(number)]
@@ -293,3 +294,14 @@ def test_the_program_of_the_page_runs(browser, tmp_path, monkeypatch):
     exec(compile(program, "viewer.md", "exec"), {})
     browser.get((tmp_path / "run.html").as_uri())
     assert browser.execute_script("return caromPage.recording.bodies") == ["rigid body 'ball'"]
+
+
+def test_lines_around_long_polygons_are_as_wide_at_their_ends(show):
+    page = show("everything")
+    page.seek(0.0)
+    picture = page.picture()
+    # Along the lower edge of the block that shakes, from 0.9 m to 1.5 m, which is six times as long as high.
+    columns = [page.pixel(x, -0.6) for x in (0.925, 1.0, 1.2, 1.475)]
+    lines = [picture[row - 4 : row + 5, column].tolist() for column, row in columns]
+    assert all(line == lines[2] for line in lines)
+    assert min(min(pixel) for pixel in lines[2]) < 140  # there is one
