@@ -1,0 +1,93 @@
+"""A ball on a vibrating table: period doubling, as a diagram over the acceleration of the table.
+
+Usage: 13_vibrating_table.py <folder> [<accelerations> [<starts>]]: writes phases.csv and vibrating_table.png there. At
+each acceleration the ball is thrown up from the table at several phases, as fast as it flies for one period; the phases of
+its last impacts are drawn. 400 accelerations and 400 starts take some minutes. Orbits of one impact a period begin at
+A w^2 = g pi (1 - e) / (1 + e), and double at A^2 w^4 / g^2 = (pi (1 - e) / (1 + e))^2 + (2 (1 + e^2) / (1 + e)^2)^2
+(Holmes 1982, for a ball that flies high above the table).
+"""
+
+from __future__ import annotations
+
+import math
+import pathlib
+import sys
+from typing import Any
+
+import numpy
+
+import carom
+from carom import EventDriven, EventKind, Simulation, Surface, System
+from carom.planar import Gravity, HalfPlane, Particle, PrescribedMotion, VectorHarmonic, VectorLaw
+
+G, OMEGA, RESTITUTION = 9.81, 2.0 * math.pi * 20.0, 0.8
+PERIOD = 2.0 * math.pi / OMEGA
+PERIODS, KEPT = 300, 24  # of the table in a run, impacts that are drawn
+MODE = EventDriven(interval=PERIOD, event_limit=1e6)
+
+
+def table(acceleration: float, start: float) -> System:
+    """acceleration: the largest of the table, in g. start: phase of the table when the ball is thrown [periods]."""
+    system = System()
+    system.add(Gravity((0.0, -G)))
+    size = acceleration * G / OMEGA**2
+    phase = 2.0 * math.pi * start
+    lift = VectorLaw(harmonics=[VectorHarmonic(amplitude=(0.0, size), frequency=OMEGA, phase=phase)])
+    motion = PrescribedMotion(displacement=lift)
+    surface = Surface(friction=0.0, normal_restitution=RESTITUTION)
+    system.add(HalfPlane(normal=(0.0, 1.0), motion=motion), surface, "table")
+    place = (0.0, size * math.sin(phase) + 1e-6)
+    system.add(Particle(mass=1.0, position=place, velocity=(0.0, 0.5 * G * PERIOD)), "ball")
+    return system
+
+
+def last_phases(simulation: Simulation) -> numpy.ndarray[Any, Any]:
+    """Phases of the table at the last impacts [periods], without the start's own; NaN where there are fewer."""
+    times = [event.time for event in simulation.events() if event.kind == EventKind.impact][-KEPT:]
+    phases = numpy.full(KEPT, numpy.nan)
+    phases[: len(times)] = numpy.array(times) / PERIOD % 1.0
+    return phases
+
+
+def main(folder: pathlib.Path, accelerations: int, starts: int) -> None:
+    grid = {
+        "acceleration": numpy.linspace(0.3, 1.5, accelerations),
+        "start": numpy.arange(starts) / starts,
+    }
+    runs = carom.ensemble(
+        table, grid, mode=MODE, until=PERIODS * PERIOD, outputs={"phases": last_phases}, progress=sys.stderr.isatty()
+    )
+    phases = (runs["phases"] + runs["start"][:, None]) % 1.0
+    print(f"{len(runs)} runs, {len(runs.failed)} failed")
+    for failure in runs.failed[:3]:
+        print(f"  {failure.parameters}: {failure.message}")
+    rows = numpy.column_stack([runs["acceleration"], runs["start"], phases])
+    names = ",".join(["acceleration", "start", *(f"phase {i}" for i in range(KEPT))])
+    numpy.savetxt(folder / "phases.csv", rows, delimiter=",", header=names, comments="")
+    draw(folder, runs["acceleration"], phases)
+
+
+def draw(folder: pathlib.Path, accelerations: numpy.ndarray[Any, Any], phases: numpy.ndarray[Any, Any]) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(8, 4.5), layout="constrained")
+    axes.plot(numpy.repeat(accelerations, phases.shape[1]), phases.ravel(), ".", markersize=1.0, color="#0b62a4")
+    begins = math.pi * (1.0 - RESTITUTION) / (1.0 + RESTITUTION)
+    doubles = math.hypot(begins, 2.0 * (1.0 + RESTITUTION**2) / (1.0 + RESTITUTION) ** 2)
+    for at, what in ((begins, "one impact a period"), (doubles, "doubles")):
+        axes.axvline(at, color="0.6", linewidth=0.8)
+        axes.text(at, 1.01, f" {what}", color="0.4", fontsize=8)
+    axes.set(xlabel=r"$A\,\omega^2 / g$", ylabel="phase of the table at impacts [periods]", ylim=(0.0, 1.0))
+    figure.savefig(folder / "vibrating_table.png", dpi=150)
+    pyplot.close(figure)
+
+
+if __name__ == "__main__":
+    if not 2 <= len(sys.argv) <= 4:
+        sys.exit(__doc__)
+    target = pathlib.Path(sys.argv[1])
+    target.mkdir(parents=True, exist_ok=True)
+    main(target, *(int(word) for word in [*sys.argv[2:], *("400", "4")[len(sys.argv) - 2 :]]))
