@@ -161,6 +161,13 @@ Index FeatureRegions::touching_at(Index corner, Index found) const {
                       std::min(at->lower.within, at->upper.within) >= -lengths_.corner;
     if (meet) return *edge_of_one(corner, *at);
     if (at->cone.lower.is_of_a) return corner;
+  } else if (at && std::abs(at->lower.gap - at->upper.gap) > lengths_.corner) {
+    // One corner has not come to the other one yet, or has passed it: only that before whose edge the other
+    // outline ends touches, however far this one reaches below the line of the other edge elsewhere.
+    const ConeEnd& first = at->lower.gap > at->upper.gap ? at->cone.lower : at->cone.upper;
+    if (first.is_of_a) return corner;
+    const SharpCorner b = SharpCorner::of(outline_, corner);
+    return first.is_behind ? b.edge_behind : b.edge_before;
   }
   if (outline_.size() == 1) return corner;
   const Index edge = edge_at(corner, found);
