@@ -87,7 +87,8 @@ struct SolidPiece {
     }
     if (std::min(tail, head) > near) return {0.0, 0.0};
     if (std::max(tail, head) <= near) continue;
-    const double at = side.length() * (near - tail) / (head - tail);
+    // Where it crosses the line itself: there what follows on the line begins.
+    const double at = std::clamp(side.length() * tail / (tail - head), 0.0, side.length());
     (tail > near ? part.first : part.second) =
         tail > near ? std::max(part.first, at) : std::min(part.second, at);
   }
