@@ -58,9 +58,7 @@ std::vector<Index> groups_of(const Pairs& pairs, std::size_t bodies) {
   return first;
 }
 
-bool may_have_seams(const DescribedOutline& of) {
-  return of.outline.radius == 0.0 && of.vertices.size() > 2;
-}
+bool may_have_seams(const DescribedOutline& of) { return of.outline.radius == 0.0 && of.vertices.size() > 2; }
 
 /// Frame of a body at the start, seen from that of another one.
 PlaneFrame frame_from(const Assembly& assembly, const State& start, Index body) {

@@ -55,8 +55,8 @@ void DrawnOutline::add_corner(Index side, const Vec<2>& described, std::vector<V
   }
 }
 
-/// A corner of which a neighbour covers the side, but not all of that. \param top the face that goes on there,
-/// at its `end`
+/// A corner of which a neighbour covers the side, but not all of that. \param top the face that goes on
+/// there, at its `end`
 void DrawnOutline::cut_corner(Index top, std::size_t end, Index side, const Vec<2>& corner,
                               std::vector<Vec<2>>& out) const {
   const SideFollower& next = followers_[top][end];

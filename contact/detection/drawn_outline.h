@@ -3,12 +3,13 @@
 /// \file
 /// The outline of a convex piece that goes on in its neighbours, and stays convex.
 ///
-/// The problem: where the tops of two pieces lie in one plane, what slides from one to the other is not to meet
-/// the side of the other one. On ground at rest the tops become faces of one polyline (flush_faces.h). A piece
-/// that is to touch others which are polylines themselves has to stay a convex outline. So where a neighbour
-/// covers all of its side, its top goes on under that of the neighbour, a corner within the neighbour lower by
-/// a slope that nothing feels; and where the neighbour covers a part of the side, beginning at the corner, the
-/// corner is cut off, so that the side begins below the top, and the neighbour's top goes on to there.
+/// The problem: where the tops of two pieces lie in one plane, what slides from one to the other is not to
+/// meet the side of the other one. On ground at rest the tops become faces of one polyline (flush_faces.h). A
+/// piece that is to touch others which are polylines themselves has to stay a convex outline. So where a
+/// neighbour covers all of its side, its top goes on under that of the neighbour, a corner within the
+/// neighbour lower by a slope that nothing feels; and where the neighbour covers a part of the side,
+/// beginning at the corner, the corner is cut off, so that the side begins below the top, and the neighbour's
+/// top goes on to there.
 
 #include <carom/contact/detection/flush_sides.h>
 #include <carom/core/ids.h>

@@ -152,6 +152,14 @@ GapPoint FeatureRegions::gap(const ConvexOutline& point, Index feature) const {
   return gap_along(own_edge(feature), corner_of_vertex(), SharpCorner::of(outline_, corner_of(feature)));
 }
 
+/// True if the vertex moves away from an edge while it slides along another one.
+bool FeatureRegions::slides_off(const Vec<2>& from, const Vec<2>& along) const {
+  constexpr double slides = 1e-3;  // part of a speed that is none across an edge, as where corners meet
+  const double slow = slides * rate_.norm();
+  const double in_a_second = lengths_.corner;  // what is slower rests, but for rounding
+  return std::abs(along.dot(rate_)) <= slow && from.dot(rate_) > std::max(slow, in_a_second);
+}
+
 /// The edge that the vertex touches at a corner, or the corner where it touches none: it stands beyond the
 /// end of the edge, so that the corner stands before an edge of the other outline, or that separates them
 /// more.
@@ -161,13 +169,18 @@ Index FeatureRegions::touching_at(Index corner, Index found) const {
                       std::min(at->lower.within, at->upper.within) >= -lengths_.corner;
     if (meet) return *edge_of_one(corner, *at);
     if (at->cone.lower.is_of_a) return corner;
-  } else if (at && std::abs(at->lower.gap - at->upper.gap) > lengths_.corner) {
-    // One corner has not come to the other one yet, or has passed it: only that before whose edge the other
-    // outline ends touches, however far this one reaches below the line of the other edge elsewhere.
-    const ConeEnd& first = at->lower.gap > at->upper.gap ? at->cone.lower : at->cone.upper;
-    if (first.is_of_a) return corner;
+  } else if (at) {
+    const bool lower_is_own = at->cone.lower.is_of_a;
+    const ConeEnd &own = lower_is_own ? at->cone.lower : at->cone.upper,
+                  &other = lower_is_own ? at->cone.upper : at->cone.lower;
+    const double own_gap = lower_is_own ? at->lower.gap : at->upper.gap;
+    const double other_gap = lower_is_own ? at->upper.gap : at->lower.gap;
+    // One corner has not come to the other one yet, or passes it: what touches stands before the edge along
+    // which the gap is larger, however far its outline reaches below the line of the other edge elsewhere.
+    if (own_gap - other_gap > lengths_.corner) return corner;
     const SharpCorner b = SharpCorner::of(outline_, corner);
-    return first.is_behind ? b.edge_behind : b.edge_before;
+    if (other_gap - own_gap > lengths_.corner) return other.is_behind ? b.edge_behind : b.edge_before;
+    if (slides_off(other.normal, own.normal)) return corner;
   }
   if (outline_.size() == 1) return corner;
   const Index edge = edge_at(corner, found);
