@@ -6,10 +6,12 @@
 #include <carom/contact/detection/pair_filter.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace carom {
@@ -18,25 +20,44 @@ namespace {
 
 using Pairs = std::set<std::pair<Index, Index>>;
 
+/// Where bodies are at the start.
+struct Start {
+  State state;
+  Evaluation evaluation;
+
+  explicit Start(const Assembly& assembly)
+      : state(assembly.initial_state()), evaluation(make_evaluation(assembly)) {
+    evaluate_positions(assembly, state.view(), evaluation);
+  }
+};
+
+/// True if a joint of three rows is closed at the start, so that its bodies stay as they stand there.
+bool is_closed(const JointKind& kind, Index joint, const Start& start) {
+  const double rounding = FeatureLengths().corner;  // [m, rad]
+  std::array<JointRow, JointKind::most_rows> rows;
+  kind.evaluate({start.state.view(), start.evaluation.rotation.data()}, joint, rows.data());
+  return std::all_of(rows.begin(), rows.begin() + kind.rows(),
+                     [&](const JointRow& row) { return std::abs(row.gap) <= rounding; });
+}
+
 /// Pairs of bodies that one joint binds in all three directions at all times, and that do not touch each
-/// other.
-Pairs bound_pairs(const Assembly& assembly) {
+/// other. \param start is made if there are such joints
+Pairs bound_pairs(const Assembly& assembly, std::optional<Start>& start) {
   constexpr Index all_directions = 3;
-  const System& system = assembly.system();
   const Layout& layout = *assembly.layout();
   Pairs pairs;
   std::optional<PairFilter> filter;
   std::vector<BodyId> ends;
-  for (const auto& entry : system.joint_kinds().entries()) {
-    const JointKind& kind = *entry.kind;
-    if (kind.rows() != all_directions || kind.depends_on_time()) continue;
-    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+  for (const auto& kind : assembly.joint_kinds()) {
+    if (kind->rows() != all_directions || kind->depends_on_time()) continue;
+    for (Index joint = 0; joint < kind->size(); ++joint) {
       ends.clear();
-      kind.ends(slot, ends);
+      kind->ends(joint, ends);
       if (ends.size() != 2 || ends[0] == ground || ends[1] == ground || ends[0] == ends[1]) continue;
-      const std::pair<Index, Index> pair = std::minmax(layout.index(ends[0]), layout.index(ends[1]));
+      const std::pair<Index, Index> pair = std::minmax({layout.index(ends[0]), layout.index(ends[1])});
       if (!filter) filter.emplace(assembly);
-      if (filter->is_excluded(pair.first, pair.second)) pairs.insert(pair);
+      if (!start) start.emplace(assembly);
+      if (filter->is_excluded(pair.first, pair.second) && is_closed(*kind, joint, *start)) pairs.insert(pair);
     }
   }
   return pairs;
@@ -60,20 +81,11 @@ std::vector<Index> groups_of(const Pairs& pairs, std::size_t bodies) {
 
 bool may_have_seams(const DescribedOutline& of) { return of.outline.radius == 0.0 && of.vertices.size() > 2; }
 
-/// Frame of a body at the start, seen from that of another one.
-PlaneFrame frame_from(const Assembly& assembly, const State& start, Index body) {
-  const BodySlot slot = assembly.layout()->bodies()[body];
-  PlaneFrame frame;
-  frame.centre = {start.q[slot.q], start.q[slot.q + 1]};
-  frame.cosine = std::cos(start.q[slot.q + 2]);
-  frame.sine = std::sin(start.q[slot.q + 2]);
-  return frame;
-}
-
 }  // namespace
 
 void draw_seams(const Assembly& assembly, std::vector<DescribedOutline>& outlines) {
-  const Pairs bound = bound_pairs(assembly);
+  std::optional<Start> start;
+  const Pairs bound = bound_pairs(assembly, start);
   const std::vector<Index> group = groups_of(bound, assembly.layout()->bodies().size());
   std::vector<Index> order;
   for (Index i = 0; i < outlines.size(); ++i) {
@@ -81,7 +93,6 @@ void draw_seams(const Assembly& assembly, std::vector<DescribedOutline>& outline
   }
   const auto group_of = [&](Index i) { return group[outlines[i].outline.body]; };
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return group_of(a) < group_of(b); });
-  std::optional<State> start;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     for (end = begin + 1; end < order.size() && group_of(order[end]) == group_of(order[begin]);) ++end;
     if (end - begin < 2) continue;
@@ -90,11 +101,11 @@ void draw_seams(const Assembly& assembly, std::vector<DescribedOutline>& outline
     const bool is_one_body = std::all_of(own.begin(), own.end(), [&](Index i) {
       return outlines[i].outline.body == outlines[own[0]].outline.body;
     });
-    if (!is_one_body && !start) start = assembly.initial_state();
     std::vector<RestingShape> shapes;
     std::vector<PlaneFrame> frames;
     for (Index i = 0; i < own.size(); ++i) {
-      frames.push_back(is_one_body ? PlaneFrame() : frame_from(assembly, *start, body_of(i)));
+      const BodySlot slot = assembly.layout()->bodies()[body_of(i)];
+      frames.push_back(is_one_body ? PlaneFrame() : PlaneFrame(slot, start->state.view(), start->evaluation));
       GroundPiece piece{.form = GroundPiece::Form::solid, .points = outlines[own[i]].vertices};
       for (Vec<2>& point : piece.points) point = frames[i].outside(point);
       shapes.push_back({.filter = outlines[own[i]].outline.filter, .pieces = {std::move(piece)}});

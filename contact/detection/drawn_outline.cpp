@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace carom {
 
@@ -9,12 +10,16 @@ namespace {
 
 /// How far a face goes on under the neighbour's, as a part of that one.
 constexpr double drawn_part = 0.25;
-/// How much lower it gets on the way: less than can be felt as a slope, and more than what stands on the
-/// neighbour sinks into it.
-constexpr double drawn_slope = 1e-6;
+/// The part of that on which it is no lower: whoever begins at the seam, or stands there, is on both faces.
+constexpr double level_part = 0.01;
+/// How much lower it gets on the way from there: less than can be felt as a slope, and more than what stands
+/// on the neighbour sinks into it.
+constexpr double drawn_slope = 2.5e-7;
+/// Faces that turn by less go on in one line [rad].
+constexpr double in_line = 1e-9;
 /// How much of a face is cut off at a corner, as a part of the shorter one of the two: the side begins deeper
 /// than surfaces may be apart that touch, of all faces longer than some centimetres.
-constexpr double cut_part = 0.05;
+constexpr double cut_part = 0.25;
 /// The slope of the cut: steeper than that of the neighbour's face which goes on below it.
 constexpr double cut_slope = 2.0 * drawn_slope;
 
@@ -26,16 +31,8 @@ bool DrawnOutline::goes_on_at(Index side, std::size_t end) const {
 }
 
 std::vector<Vec<2>> DrawnOutline::points(std::span<const Vec<2>> described) const {
-  const auto n = static_cast<Index>(described.size());
   std::vector<Vec<2>> out;
-  for (Index i = 0; i < n; ++i) {
-    const Index at = of_->first_side + i;
-    add_corner(at, described[i], out);
-    if (!sides_[at].is_hidden) continue;
-    const Vec<2>&tail = described[i], &head = described[(i + 1) % n];
-    if (const auto corner = drawn(sides_[at].next[0], 1, tail, head)) out.push_back(*corner);
-    if (const auto corner = drawn(sides_[at].next[1], 0, tail, head)) out.push_back(*corner);
-  }
+  for (Index i = 0; i < described.size(); ++i) add_corner(of_->first_side + i, described[i], out);
   return out;
 }
 
@@ -43,16 +40,29 @@ std::vector<Vec<2>> DrawnOutline::points(std::span<const Vec<2>> described) cons
 void DrawnOutline::add_corner(Index side, const Vec<2>& described, std::vector<Vec<2>>& out) const {
   const Index before = sides_[side].next[0];
   if (goes_on_at(before, 1)) {
-    const Vec<2>& moved = sides_[before].ends[1];
-    if (!sides_[side].is_hidden && sides_[side].is_cut[0]) return cut_corner(before, 1, side, moved, out);
-    out.push_back(moved);
+    add_end(before, 1, side, out);
   } else if (goes_on_at(side, 0)) {
-    const Vec<2>& moved = sides_[side].ends[0];
-    if (!sides_[before].is_hidden && sides_[before].is_cut[1]) return cut_corner(side, 0, before, moved, out);
-    out.push_back(moved);
+    add_end(side, 0, before, out);
   } else {
     out.push_back(described);
   }
+}
+
+/// The corner between a face that goes on in a neighbour, at its `end`, and the side there.
+void DrawnOutline::add_end(Index top, std::size_t end, Index side, std::vector<Vec<2>>& out) const {
+  const Vec<2>& corner = sides_[top].ends[end];
+  if (sides_[side].is_hidden) {
+    if (const auto at = drawn(top, end, sides_[side])) {
+      // Where the neighbour's face turns away the corner is one of the floor.
+      const bool is_bent = followers_[top][end].turn > std::numbers::pi + in_line;
+      const Vec<2>& near = is_bent ? corner : at->near;
+      out.insert(out.end(), {end == 0 ? at->far : near, end == 0 ? near : at->far});
+      return;
+    }
+  } else if (sides_[side].is_cut[1 - end]) {
+    return cut_corner(top, end, side, corner, out);
+  }
+  out.push_back(corner);
 }
 
 /// A corner of which a neighbour covers the side, but not all of that. \param top the face that goes on
@@ -72,19 +82,20 @@ void DrawnOutline::cut_corner(Index top, std::size_t end, Index side, const Vec<
   out.push_back(end == 0 ? on_top : on_side);
 }
 
-/// The corner that is added where a face goes on beside a hidden side, if all between is in one neighbour.
-/// \param tail,head of the hidden side
-std::optional<Vec<2>> DrawnOutline::drawn(Index top, std::size_t end, const Vec<2>& tail,
-                                          const Vec<2>& head) const {
-  if (!goes_on_at(top, end) || !followers_[top][end].ends_here) return {};
+/// The corners in place of one where a face goes on beside a hidden side, if all between is in one neighbour.
+std::optional<DrawnOutline::Drawn> DrawnOutline::drawn(Index top, std::size_t end,
+                                                       const PieceSide& hidden) const {
+  if (!followers_[top][end].ends_here) return {};
   const PieceSide& next = sides_[followers_[top][end].side];
   const double far = drawn_part * next.length(), sense = end == 0 ? -1.0 : 1.0;
-  const Vec<2> at = sides_[top].ends[end] + far * (sense * next.along - drawn_slope * next.normal());
+  const Vec<2>& corner = sides_[top].ends[end];
+  const Vec<2> along = sense * next.along;
+  const Drawn at{corner + level_part * far * along, corner + far * along - drawn_slope * far * next.normal()};
   const auto own = std::find_if(solids_.begin(), solids_.end(),
                                 [&](const SolidPiece& solid) { return solid.piece == next.piece; });
-  const double near = near_places(next.length(), at);
-  const bool inside = own->height(at) < 0.0 && std::max(own->height(tail), own->height(head)) <= near;
-  return inside ? std::optional<Vec<2>>(at) : std::nullopt;
+  const double near = near_places(next.length(), at.far);
+  const double highest = std::max(own->height(hidden.beyond[0]), own->height(hidden.beyond[1]));
+  return own->height(at.far) < 0.0 && highest <= near ? std::optional<Drawn>(at) : std::nullopt;
 }
 
 }  // namespace carom

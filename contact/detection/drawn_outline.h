@@ -36,10 +36,13 @@ public:
 private:
   [[nodiscard]] bool goes_on_at(Index side, std::size_t end) const;
   void add_corner(Index side, const Vec<2>& described, std::vector<Vec<2>>& out) const;
+  void add_end(Index top, std::size_t end, Index side, std::vector<Vec<2>>& out) const;
   void cut_corner(Index top, std::size_t end, Index side, const Vec<2>& corner,
                   std::vector<Vec<2>>& out) const;
-  [[nodiscard]] std::optional<Vec<2>> drawn(Index top, std::size_t end, const Vec<2>& tail,
-                                            const Vec<2>& head) const;
+  struct Drawn {
+    Vec<2> near, far;  // where the face begins to sink, and where it ends
+  };
+  [[nodiscard]] std::optional<Drawn> drawn(Index top, std::size_t end, const PieceSide& hidden) const;
 
   std::span<const PieceSide> sides_;
   std::span<const SideFollowers> followers_;

@@ -61,7 +61,6 @@ public:
 
 private:
   [[nodiscard]] Index face_of_segment(Index nearest) const;
-  [[nodiscard]] bool slides_off(const Vec<2>& from, const Vec<2>& along) const;
   [[nodiscard]] Index touching_at(Index corner, Index found) const;
   [[nodiscard]] Index edge_at(Index corner, Index found) const;
   [[nodiscard]] SharpCorner corner_of_vertex() const;
