@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-namespace carom_test {
+namespace carom_test::floors {
 
 using namespace carom;
 using namespace carom::planar;
@@ -50,7 +50,7 @@ struct Frame {
   [[nodiscard]] Vec<2> place(double x, double y) const { return origin + direction(x, y); }
 };
 
-inline Block tile(const Frame& at, double from, double to, double top, double height) {
+inline planar::Block tile(const Frame& at, double from, double to, double top, double height) {
   return {.vertices = {at.place(from, top - height), at.place(to, top - height), at.place(to, top),
                        at.place(from, top)}};
 }
@@ -71,4 +71,4 @@ inline BodyId add_box(System& system, const Frame& at, double x, double half, do
   return body;
 }
 
-}  // namespace carom_test
+}  // namespace carom_test::floors

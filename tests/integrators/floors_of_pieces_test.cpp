@@ -16,6 +16,7 @@
 namespace {
 
 using namespace carom_test;
+using namespace carom_test::floors;
 using namespace carom;
 using namespace carom::planar;
 

@@ -15,12 +15,13 @@
 namespace {
 
 using namespace carom_test;
+using namespace carom_test::floors;
 
 constexpr double end_time = 1.0;
 
 /// A box, a rod or a particle that slides off a ledge, without friction.
 struct Ledge {
-  Frame frame;
+  Frame frame{};
   double depth = 1e-5, before = 0.0, speed = 1.0, half = 0.2, high = 0.1, restitution = 0.0;
   double height = 1.0, lower_height = 1.0;  // of the two blocks
   enum class Slider { box, segment, particle } slider = Slider::box;

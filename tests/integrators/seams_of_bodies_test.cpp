@@ -18,6 +18,7 @@
 namespace {
 
 using namespace carom_test;
+using namespace carom_test::floors;
 
 using Points = std::vector<Vec<2>>;
 
