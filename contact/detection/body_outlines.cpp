@@ -1,4 +1,5 @@
 #include <carom/contact/detection/body_outlines.h>
+#include <carom/contact/detection/body_seams.h>
 #include <carom/core/described_sets.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
   }
   std::vector<Outline> outlines;
   std::vector<RoundedPoint> points;
+  std::vector<DescribedOutline> described;
   for (const Index serial : system.shape_kinds().serials()) {
     const auto place = system.shape_kinds().place(serial);
     const ShapeKind& kind = *system.shape_kinds().entries()[place.entry].kind;
@@ -32,16 +34,23 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
     points.clear();
     kind.rounded_points(place.slot, points);
     check_same_set(check, points, outlines);
-    Index feature = 0;
     for (const Outline& outline : outlines) {
       BodyOutline of_body;
       of_body.body = layout.index(kind.body(place.slot));
-      of_body.key = {FeatureKey::Owner::shape, serial, feature};
+      of_body.key = {FeatureKey::Owner::shape, serial, 0};
       of_body.filter = kind.filter(place.slot);
       of_body.radius = outline.radius;
-      add(of_body, outline.vertices, kind.material(place.slot));
-      feature += static_cast<Index>(outline.vertices.size()) + 1;
+      described.push_back({of_body, outline.vertices, kind.material(place.slot)});
     }
+  }
+  draw_seams(assembly, described);
+  Index feature = 0;
+  for (std::size_t i = 0; i < described.size(); ++i) {
+    BodyOutline& of_body = described[i].outline;
+    if (i == 0 || of_body.key.serial != described[i - 1].outline.key.serial) feature = 0;
+    of_body.key.feature = feature;
+    add(of_body, described[i].vertices, described[i].material);
+    feature += static_cast<Index>(described[i].vertices.size()) + 1;
   }
   std::stable_sort(list_.begin(), list_.end(),
                    [](const BodyOutline& a, const BodyOutline& b) { return a.body < b.body; });

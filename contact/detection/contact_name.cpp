@@ -42,7 +42,10 @@ std::string shape_name(const System& system, const FeatureKey& key, const char* 
   if (const auto place = system.shape_kinds().place(key.serial); place.slot != none) {
     std::vector<RoundedPoint> points;
     system.shape_kinds().entries()[place.entry].kind->rounded_points(place.slot, points);
-    if (key.feature > points.size()) refuse(side, key);  // behind the points comes the outline as a whole
+    // Behind the points comes the outline as a whole; neighbours may add two corners to each side, before
+    // that (DrawnOutline).
+    const std::size_t most = points.size() > 2 ? 3 * points.size() : points.size();
+    if (key.feature > most) refuse(side, key);
   }
   const ShapeId shape{key.serial, system.token()};
   return system.name(shape) + " (feature " + std::to_string(key.feature) + ") of " +

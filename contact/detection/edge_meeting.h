@@ -13,6 +13,7 @@
 #include <carom/contact/detection/gap_vertex_edge.h>
 #include <carom/contact/detection/gap_vertex_vertex.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -33,11 +34,25 @@ inline Index deepest_vertex(const OutlineEdge& face, const ConvexOutline& of) {
   return deepest;
 }
 
-/// The edge at the deepest vertex of an outline that looks most against a face; without length if there is
-/// none.
+/// True of two neighbouring edges between which nobody can tell a corner from rounding by their directions.
+inline bool are_in_line(const OutlineEdge& one, const OutlineEdge& other) {
+  constexpr double in_line = 1.0 - 1e-11;  // within 5e-6 rad
+  return one.length > 0.0 && other.length > 0.0 && one.along.dot(other.along) > in_line;
+}
+
+/// How much of a face an edge lies before, by its projection [m].
+inline double overlap_of(const OutlineEdge& face, const OutlineEdge& edge, const ConvexOutline& of) {
+  const double tail = face.coordinate(of.vertices[edge.tail]), head = face.coordinate(of.vertices[edge.head]);
+  return std::min(face.length, std::max(tail, head)) - std::max(0.0, std::min(tail, head));
+}
+
+/// The edge at the deepest vertex of an outline that looks most against a face, of two in line the one that
+/// lies before more of it; without length if there is none.
 inline OutlineEdge facing_edge(const ConvexOutline& of, const OutlineEdge& face) {
   const Index deepest = deepest_vertex(face, of);
   const OutlineEdge before(of, of.before(deepest)), behind(of, deepest);
+  if (of.size() > 2 && are_in_line(before, behind))
+    return overlap_of(face, before, of) > overlap_of(face, behind, of) ? before : behind;
   const bool takes_before = behind.length == 0.0 || (before.length > 0.0 && before.along.dot(face.along) <=
                                                                                 behind.along.dot(face.along));
   return takes_before ? before : behind;

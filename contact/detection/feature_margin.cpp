@@ -2,6 +2,7 @@
 // rounded corner? In the frame of the outline the regions of features are bounded by straight lines, so that
 // margins are linear in the place of the vertex.
 
+#include <carom/contact/detection/edge_meeting.h>
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/gap_convex.h>
 
@@ -11,6 +12,19 @@
 #include <limits>
 
 namespace carom {
+
+namespace {
+
+/// True of a corner that moves away from an edge while it slides along another one. \param rate its velocity
+/// \param from,along normals of the two edges
+bool slides_off(const Vec<2>& rate, const Vec<2>& from, const Vec<2>& along, const FeatureLengths& lengths) {
+  constexpr double slides = 1e-3;  // part of a speed that is none across an edge, as where corners meet
+  const double slow = slides * rate.norm();
+  const double in_a_second = lengths.corner;  // what is slower rests, but for rounding
+  return std::abs(along.dot(rate)) <= slow && from.dot(rate) > std::max(slow, in_a_second);
+}
+
+}  // namespace
 
 FeatureRegions::FeatureRegions(const OutlinePair& pair)
     : outline_(pair.outline),
@@ -90,8 +104,9 @@ Index FeatureRegions::edge_at(Index corner, Index found) const {
     if (chain_->face_before(corner) == none) return n + corner;
     if (chain_->face_behind(corner) == none) return n + before;
   }
-  const double behind_corner = separation_along(OutlineEdge(outline_, corner));
-  return separation_along(OutlineEdge(outline_, before)) > behind_corner ? n + before : n + corner;
+  const OutlineEdge in(outline_, before), out(outline_, corner);
+  if (n > 2 && are_in_line(in, out)) return n + (out.coordinate(place_) > 0.0 ? corner : before);
+  return separation_along(in) > separation_along(out) ? n + before : n + corner;
 }
 
 /// The corner of the other outline that the vertex is, in the frame of the outline.
@@ -161,6 +176,18 @@ Index FeatureRegions::touching_at(Index corner, Index found) const {
                       std::min(at->lower.within, at->upper.within) >= -lengths_.corner;
     if (meet) return *edge_of_one(corner, *at);
     if (at->cone.lower.is_of_a) return corner;
+  } else if (at) {
+    const bool lower_is_own = at->cone.lower.is_of_a;
+    const ConeEnd &own = lower_is_own ? at->cone.lower : at->cone.upper,
+                  &other = lower_is_own ? at->cone.upper : at->cone.lower;
+    const double own_gap = lower_is_own ? at->lower.gap : at->upper.gap;
+    const double other_gap = lower_is_own ? at->upper.gap : at->lower.gap;
+    // One corner has not come to the other one yet, or passes it: what touches stands before the edge along
+    // which the gap is larger, however far its outline reaches below the line of the other edge elsewhere.
+    if (own_gap - other_gap > lengths_.corner) return corner;
+    const SharpCorner b = SharpCorner::of(outline_, corner);
+    if (other_gap - own_gap > lengths_.corner) return other.is_behind ? b.edge_behind : b.edge_before;
+    if (slides_off(rate_, other.normal, own.normal, lengths_)) return corner;
   }
   if (outline_.size() == 1) return corner;
   const Index edge = edge_at(corner, found);

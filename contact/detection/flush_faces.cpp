@@ -3,6 +3,7 @@
 #include <carom/contact/detection/box.h>
 #include <carom/contact/detection/box_grid.h>
 #include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/drawn_outline.h>
 #include <carom/contact/detection/flush_faces.h>
 #include <carom/contact/detection/flush_sides.h>
 #include <carom/contact/detection/gap_face.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -20,12 +22,34 @@ namespace {
 
 class FlushFaces {
 public:
-  explicit FlushFaces(std::span<RestingShape> shapes) : shapes_(shapes) {
+  /// \param may_cover as of draw_covered_corners(); empty: shapes of one filter do
+  explicit FlushFaces(std::span<RestingShape> shapes, std::function<bool(Index, Index)> may_cover = {})
+      : shapes_(shapes), may_cover_(std::move(may_cover)) {
     for (Index shape = 0; shape < shapes_.size(); ++shape) add(shape);
   }
 
   void join() {
-    if (sides_.empty() || pieces_ < 2) return;
+    const std::vector<bool> joined = find();
+    for (Index shape = 0; shape < joined.size(); ++shape) {
+      if (joined[shape]) write(shape);
+    }
+  }
+  void draw() {
+    const std::vector<bool> joined = find();
+    for (const SolidPiece& solid : solids_) {
+      if (joined.empty() || !joined[solid.shape]) continue;
+      std::vector<Vec<2>>& points = shapes_[solid.shape].pieces.front().points;
+      points = DrawnOutline(sides_, followers_, solids_, solid).points(points);
+    }
+  }
+
+private:
+  using Form = GroundPiece::Form;
+
+  // What others cover, and what follows. \returns by shape, whether a face of it goes on in another piece;
+  // nothing if none does
+  std::vector<bool> find() {
+    if (sides_.empty() || pieces_ < 2) return {};
     build_grids();
     for (PieceSide& side : sides_) uncover(side);
     followers_.resize(sides_.size());
@@ -39,20 +63,13 @@ public:
         joined[sides_[i].shape] = any = true;
       }
     }
-    if (!any) return;
+    if (!any) return {};
     move_together();
-    for (Index shape = 0; shape < shapes_.size(); ++shape) {
-      if (joined[shape]) write(shape);
-    }
+    return joined;
   }
-
-private:
-  using Form = GroundPiece::Form;
-
-  // True where a face of another piece follows in one line, or turning to the free side.
-  static bool goes_on(const SideFollower& at) {
-    constexpr double flat = 1e-9;  // as of a polyline [rad]
-    return at.is_foreign && at.turn >= std::numbers::pi - flat;
+  [[nodiscard]] bool covers(Index shape, Index other) const {
+    if (!(shapes_[shape].filter == shapes_[other].filter)) return false;
+    return !may_cover_ || shape == other || may_cover_(shape, other);
   }
 
   void add(Index shape) {
@@ -87,6 +104,7 @@ private:
   void add_solid(Index shape, const GroundPiece& piece) {
     const auto first = static_cast<Index>(sides_.size()), n = static_cast<Index>(piece.points.size());
     SolidPiece solid{shape, pieces_, {}, box_around(piece.points, 0.0)};
+    solid.first_side = first;
     for (Index i = 0; i < n; ++i) {
       PieceSide side = side_of(shape, piece.points[i], piece.points[(i + 1) % n]);
       side.next = {first + (i + n - 1) % n, first + (i + 1) % n};
@@ -160,7 +178,7 @@ private:
   void for_solids(const PieceSide& side, F&& f) const {
     const auto look = [&](Index i) {
       const SolidPiece& solid = solids_[i];
-      if (solid.piece != side.piece && shapes_[solid.shape].filter == shapes_[side.shape].filter) f(solid);
+      if (solid.piece != side.piece && covers(solid.shape, side.shape)) f(solid);
     };
     for (const Index i : unbounded_) look(i);
     if (!has_bounded_) return;
@@ -217,7 +235,7 @@ private:
         take({own, false, true, free_angle(side, end, next.along), next.along});
     }
     const auto is_other = [&](Index shape, Index piece) {
-      return piece != side.piece && shapes_[shape].filter == shapes_[side.shape].filter;
+      return piece != side.piece && covers(shape, side.shape);
     };
     side_grid_.for_overlapping(around(side), [&](const OwnedBox<2>& box) {
       const PieceSide& other = sides_[box.number];
@@ -230,7 +248,7 @@ private:
         take({box.number, true, ends_here, free_angle(side, end, other.along), other.along});
     });
     for (const auto& [shape, line] : lines_) {
-      if (!(shapes_[shape].filter == shapes_[side.shape].filter)) continue;
+      if (!covers(shape, side.shape)) continue;
       const double height = -cross_of_sides(line.along, Vec<2>(place - line.origin));
       if (std::abs(height) <= near_places(side.length(), place))
         take({none, true, false, free_angle(side, end, line.along), line.along});
@@ -287,6 +305,7 @@ private:
   }
 
   std::span<RestingShape> shapes_;
+  std::function<bool(Index, Index)> may_cover_;
   Index pieces_ = 0;
   std::vector<PieceSide> sides_;
   std::vector<std::pair<Index, GroundLine>> lines_;  // with their shapes
@@ -294,11 +313,16 @@ private:
   std::vector<Index> unbounded_;  // solids
   bool has_bounded_ = false;
   BoxGrid<2> side_grid_, solid_grid_;
-  std::vector<std::array<SideFollower, 2>> followers_;  // by side, at its tail and head
+  std::vector<SideFollowers> followers_;  // by side, at its tail and head
 };
 
 }  // namespace
 
 void join_flush_faces(std::span<RestingShape> shapes) { FlushFaces(shapes).join(); }
+
+void draw_covered_corners(std::span<RestingShape> shapes,
+                          const std::function<bool(Index, Index)>& may_cover) {
+  FlushFaces(shapes, may_cover).draw();
+}
 
 }  // namespace carom

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// Faces of shapes on ground at rest that go on into each other: a floor of several pieces.
+/// Faces of shapes that go on into each other, on ground at rest or on one body: a floor of several pieces.
 ///
 /// The problem: where the tops of two blocks lie in one plane, the side of either is covered by the other. To
 /// be hit by a corner that slides over the seam it is no side at all, although the corner stands before it to
@@ -12,8 +12,10 @@
 #include <carom/core/contact_filter.h>
 #include <carom/core/export.h>
 #include <carom/core/ground_shape_kind.h>
+#include <carom/core/ids.h>
 #include <carom/core/space.h>
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,7 +28,7 @@ struct GroundLine {
   Vec<2> along = Vec<2>::Zero();   ///< unit vector, free space on its right
 };
 
-/// A shape on ground at rest.
+/// A shape on ground at rest, or one of several that move together.
 struct RestingShape {
   ContactFilter filter{};               ///< shapes that touch not the same bodies do not cover each other
   std::vector<GroundPiece> pieces{};    ///< where they stand
@@ -41,5 +43,12 @@ inline constexpr double flush_part = 1e-9;
 /// neighbour. Ends of faces that meet are moved into one place, by rounding (flush_part). All other pieces
 /// stay as they are.
 CAROM_API void join_flush_faces(std::span<RestingShape> shapes);
+
+/// Likewise of shapes that have to stay convex, one sharp solid each, because they touch others that move:
+/// corners from which a face goes on in one of a neighbour are changed by little, so that nothing that slides
+/// over them meets the side that the neighbour covers (DrawnOutline, drawn_outline.h). Other shapes stay as
+/// they are. \param may_cover says of two shapes whether the first may cover the second one
+CAROM_API void draw_covered_corners(std::span<RestingShape> shapes,
+                                    const std::function<bool(Index, Index)>& may_cover);
 
 }  // namespace carom

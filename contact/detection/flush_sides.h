@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -57,14 +58,31 @@ struct SideFollower {
   Vec<2> along = Vec<2>::Zero();  ///< unit vector
 };
 
+/// What follows at the tail and at the head of a side.
+using SideFollowers = std::array<SideFollower, 2>;
+
+/// True where a face of another piece follows in one line, or turning to the free side.
+[[nodiscard]] inline bool goes_on(const SideFollower& at) {
+  constexpr double flat = 1e-9;  // as of a polyline [rad]
+  return at.is_foreign && at.turn >= std::numbers::pi - flat;
+}
+
 /// A convex set: what is behind all of some lines.
 struct SolidPiece {
   Index shape = none, piece = none;  ///< as of PieceSide
   std::vector<GroundLine> lines;     ///< around it
   Box<2> box;                        ///< infinite of a set without bound [m]
+  Index first_side = none;           ///< of a solid, whose sides follow one another; else `none`
 
   /// True if its box is finite.
   [[nodiscard]] bool is_bounded() const { return std::isfinite((box.max - box.min).sum()); }
+  /// Largest height of a point over its lines: negative inside [m].
+  [[nodiscard]] double height(const Vec<2>& point) const {
+    double most = -without_bound;
+    for (const GroundLine& line : lines)
+      most = std::max(most, -cross_of_sides(line.along, Vec<2>(point - line.origin)));
+    return most;
+  }
 };
 
 /// How far from each other places are one, on a side of some length [m].
@@ -87,7 +105,8 @@ struct SolidPiece {
     }
     if (std::min(tail, head) > near) return {0.0, 0.0};
     if (std::max(tail, head) <= near) continue;
-    const double at = side.length() * (near - tail) / (head - tail);
+    // Where it crosses the line itself: there what follows on the line begins.
+    const double at = std::clamp(side.length() * tail / (tail - head), 0.0, side.length());
     (tail > near ? part.first : part.second) =
         tail > near ? std::max(part.first, at) : std::min(part.second, at);
   }

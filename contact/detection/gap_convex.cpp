@@ -82,6 +82,24 @@ SeparatingEdge widest_face(const ConvexOutline& of, const ConvexOutline& other, 
   return best;
 }
 
+/// Of an edge and one in line with it that before which the other outline stands: by their separations
+/// rounding may choose either.
+SeparatingEdge before_outline(const SeparatingEdge& face, const ConvexOutline& of,
+                              const ConvexOutline& other) {
+  if (of.size() < 3) return face;
+  const OutlineEdge& edge = face.edge;
+  const auto lies_beyond = [&](double sense, double end) {
+    return std::all_of(other.vertices.begin(), other.vertices.end(),
+                       [&](const Vec<2>& vertex) { return sense * edge.coordinate(vertex) > end; });
+  };
+  for (const bool at_head : {false, true}) {
+    if (!lies_beyond(at_head ? 1.0 : -1.0, at_head ? edge.length : 0.0)) continue;
+    const OutlineEdge next(of, at_head ? edge.head : of.before(edge.tail));
+    if (are_in_line(edge, next)) return {next, OutlineHeight(other).over(next)};
+  }
+  return face;
+}
+
 /// Which of two faces along which outlines are separated equally comes first: that which looks up, or to the
 /// right, or lies there.
 bool comes_first(const SeparatingEdge& face, const SeparatingEdge& other) {
@@ -116,10 +134,11 @@ int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double ma
   }
 
   const bool is_of_a = comes_first(face_a, face_b);
-  const OutlineEdge& face = is_of_a ? face_a.edge : face_b.edge;
   const ConvexOutline &of_face = is_of_a ? a : b, &other = is_of_a ? b : a;
+  const SeparatingEdge widest = before_outline(is_of_a ? face_a : face_b, of_face, other);
+  const OutlineEdge& face = widest.edge;
   const OutlineEdge facing = facing_edge(other, face);
-  const bool overlap = (is_of_a ? face_a : face_b).separation <= 0.0;
+  const bool overlap = widest.separation <= 0.0;
   const EdgeMeeting meeting(face, facing, of_face, other, overlap);
   int found = 0;
   for (int i = 0; i < meeting.size(); ++i) {

@@ -273,4 +273,23 @@ TEST(GapConvex, TrackedGapGoesOnBeyondTheEdge) {
   EXPECT_EQ(tracked_gap(below.view(), 6, disc(0.75, 2, 0.5).view(), 0).normal, Vec<2>(0, -1));
 }
 
+// A corner that cannot be told from none: rounding chooses before which of its edges a point stands that has
+// sunk in by less than it is beside the corner.
+TEST(GapConvex, BesideACornerInLineThereIsAnEdge) {
+  constexpr double slope = 2.5e-7;
+  const std::vector<Vec<2>> corners{{-1.0, -1.0}, {1.0, -1.0}, {1.0, -slope}, {0.0, 0.0}, {-1.0, 0.0}};
+  for (const double beside : {1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-6}) {
+    for (const double sunk : {0.0, 1e-16, 1e-15, 1e-14, 1e-13}) {
+      for (const double x : {-beside, beside}) {
+        const Vec<2> point(x, -sunk - (x > 0.0 ? slope * x : 0.0));
+        Gaps found;
+        ASSERT_EQ(find_gaps({{&point, 1}, 0.0}, {corners, 0.0}, 1e-9, found), 1) << x << ", " << sunk;
+        EXPECT_EQ(found[0].kind, GapKind::edge_of_b) << x << ", " << sunk;
+        EXPECT_EQ(found[0].feature_b, x > 0.0 ? 7U : 8U) << x << ", " << sunk;
+        EXPECT_NEAR(found[0].gap, -sunk, 1e-15) << x << ", " << sunk;
+      }
+    }
+  }
+}
+
 }  // namespace
