@@ -47,7 +47,7 @@ def main(folder: pathlib.Path, count: int) -> None:
     matplotlib.use("Agg")
     from matplotlib import patches, pyplot
 
-    figure, all_axes = pyplot.subplots(1, 2, figsize=(10, 4), layout="constrained", 
+    figure, all_axes = pyplot.subplots(1, 2, figsize=(10, 4), layout="constrained")
     for axes, (name, (e_t, speed)) in zip(all_axes, FIGURES.items()):
         runs = carom.ensemble(
             thrown,

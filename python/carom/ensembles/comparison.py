@@ -10,6 +10,7 @@ import numpy
 
 from .. import _core
 from .outputs import Outputs, Trace
+from .points import Numbers
 
 _MOST_IMPACTS = 1000  # that are compared: more come together where bodies come to rest
 
@@ -26,7 +27,7 @@ class Measured:
     """
 
     of: Union[str, Callable[[_core.Simulation], Any]]
-    times: Sequence[float]
+    times: Numbers
     values: Any
     error: Any = 1.0
 
@@ -38,7 +39,7 @@ class MeasuredImpacts:
     error: standard error [s]. of: a part of the names that count ("floor"); empty: all impacts.
     """
 
-    times: Sequence[float]
+    times: Numbers
     error: float
     of: str = ""
 

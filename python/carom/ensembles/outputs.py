@@ -9,7 +9,7 @@ from typing import Any, NoReturn, Union
 import numpy
 
 from .. import _core
-from .points import plain
+from .points import Numbers, plain
 from ..scene.errors import nearest
 
 Reader = Callable[[_core.Simulation, _core.System], Any]
@@ -35,7 +35,7 @@ class Trace:
     """
 
     of: Union[str, Callable[[_core.Simulation], Any]]
-    times: Sequence[float]
+    times: Numbers
 
     def __post_init__(self) -> None:
         times = [float(plain(time)) for time in self.times]

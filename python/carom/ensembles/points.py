@@ -5,13 +5,15 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Union
 
 import numpy
+import numpy.typing
 
 from .._core import ModelError
 
 Point = tuple[Any, ...]
+Numbers = Union[Sequence[float], "numpy.typing.NDArray[Any]"]
 
 
 def _values(name: str, values: Any) -> list[Any]:
