@@ -8,6 +8,7 @@
 /// (contact/detection/corner_meeting.h), so that the two may change names on the way of a step: directions
 /// tell which is which.
 
+#include <carom/contact/detection/corner_names.h>
 #include <carom/core/constraint.h>
 #include <carom/core/space.h>
 
@@ -16,15 +17,6 @@
 #include <span>
 
 namespace carom {
-
-/// True of names of the two contacts that two corners which meet have with each other: each names another
-/// vertex of the same two outlines.
-[[nodiscard]] inline bool may_be_of_corners(const ConstraintKey& one, const ConstraintKey& other) {
-  const auto differ = [](const FeatureKey& a, const FeatureKey& b) {
-    return a.owner == b.owner && a.serial == b.serial && a.feature != b.feature;
-  };
-  return differ(one.a, other.a) && differ(one.b, other.b);
-}
 
 /// Where a contact in the plane touches its first body, from the centre of that, by what its rows have for
 /// the spin [m]; zero of a particle.

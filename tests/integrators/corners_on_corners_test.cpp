@@ -379,12 +379,13 @@ struct Differing {
   } catch (const SolverError&) {
     ++failed;
   }
-  /// Measured: of 1000 scenes in steps 1 decided and 2 undecided ones differ, located 11 and 29, with events
-  /// 2 and 11. Located ones do where a corner slides off another one within a step: which of the two contacts
-  /// that corners have lasts then is told by gaps of rounding.
-  void expect_few(Mode run, const carom_test::SeedRange& seeds) const {
+  /// Measured, of 1000 mirrored and 1000 symmetric scenes: in steps 1 decided one and 3 undecided ones
+  /// differ, located none and 26, with events none and 11. Contacts that jam end 5 of the located ones in a
+  /// named error, closings at one instant 1 of those with events. The decided one has a contact problem with
+  /// several answers, of which principal pivoting takes one by the order of the contacts.
+  void expect_few(const carom_test::SeedRange& seeds) const {
     const int count = seeds.count();
-    EXPECT_LE(decided, run == Mode::located ? 1 + count / 50 : count / 250);
+    EXPECT_LE(decided, count / 250);
     EXPECT_LE(undecided, 1 + count / 20);
     EXPECT_LE(failed, 1 + count / 200);
   }
@@ -399,7 +400,7 @@ void expect_mirrored(Mode run, const carom_test::SeedRange& seeds, double until)
     const Scene scene = random_scene(random);
     differing.take(scene, scene.in_mirror(), themselves(scene), run, until);
   }
-  differing.expect_few(run, seeds);
+  differing.expect_few(seeds);
 }
 
 void expect_symmetric(Mode run, const carom_test::SeedRange& seeds, double until) {
@@ -410,7 +411,7 @@ void expect_symmetric(Mode run, const carom_test::SeedRange& seeds, double until
     const Scene scene = symmetric_scene(random);
     differing.take(scene, scene, {0, 1, 3, 2, 5, 4}, run, until);
   }
-  differing.expect_few(run, seeds);
+  differing.expect_few(seeds);
 }
 
 TEST_P(Corners, AMirroredSceneMovesAsInTheMirror) { expect_mirrored(GetParam(), {100, 120}, 0.3); }
