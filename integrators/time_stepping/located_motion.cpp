@@ -227,13 +227,14 @@ bool LocatedMotion::fly_once(const LocatedBody& at, MotionPhase& flight) {
 }
 
 /// Lists what the contacts of a flight have become on its way, as far as they are found.
-void LocatedMotion::take_turned(std::span<const Constraint> found, std::vector<Constraint>& out) const {
+void LocatedMotion::take_turned(std::span<const Constraint> found, double same_place,
+                                std::vector<Constraint>& out) const {
   out.clear();
   for (const Constraint& begin : of_flight_.begin) {
     const auto named = std::find_if(found.begin(), found.end(),
                                     [&](const Constraint& contact) { return contact.key == begin.key; });
     if (named == found.end()) continue;
-    const Constraint* const now = become_of(begin, *named, found);
+    const Constraint* const now = become_of(begin, *named, found, same_place);
     if (now == nullptr) continue;
     out.push_back(*now);
     out.back().key = begin.key;
@@ -249,7 +250,7 @@ bool LocatedMotion::turn(const LocatedBody& at, MotionPhase& flight) {
   for (const Constraint& contact : flight.constraints) turned_.push_back(contact.key);
   const auto find = [&](double share, std::vector<Constraint>& out) {
     FlightLook::go(at, flight, share);
-    take_turned(look_.find(at, share, turned_, false), out);
+    take_turned(look_.find(at, share, turned_, false), at.detector.pieces().pieces().lengths().corner, out);
   };
   find(0.5 * (flight.begin + flight.end), of_flight_.next_middle);
   find(flight.end, of_flight_.next_end);

@@ -58,7 +58,7 @@ private:
   [[nodiscard]] bool fly_along_begin(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool fly_once(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool solve(const LocatedBody& at, MotionPhase& phase);
-  void take_turned(std::span<const Constraint> found, std::vector<Constraint>& out) const;
+  void take_turned(std::span<const Constraint> found, double same_place, std::vector<Constraint>& out) const;
   [[nodiscard]] bool turn(const LocatedBody& at, MotionPhase& flight);
   void book_turning(MotionPhase& flight) const;
   [[nodiscard]] bool gains(const LocatedBody& at, const MotionPhase& flight) const;
