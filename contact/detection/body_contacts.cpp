@@ -222,31 +222,31 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
   BodyTouch first{i, j, found[0], 0.0};
   std::optional<GapPoint> second;
   if (of_a.radius + of_b.radius == 0.0 && is_near_corner(first.gap, lengths_.corner))
-    second = second_at_corner(first, query, memory);
+    second = second_contact(first.gap, corners_at(first, query, memory));
   const bool is_first = add_if_any(first), is_second = second && add_if_any({i, j, *second, 0.0});
   // Where one of two corners that meet touches, so does the other one.
   if (second && is_first != is_second && std::abs(first.gap.gap - second->gap) <= lengths_.corner)
     memory.touching.push_back({i, j, is_first ? *second : first.gap, 0.0});
   // One of the same name as the second is of the same corner.
-  if (count > 1 && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
-    add_if_any({i, j, found[1], 0.0});
+  if (count < 2 || (second && key_of(a, b, *second) == key_of(a, b, found[1]))) return;
+  const BodyTouch far{i, j, found[1], 0.0};
+  if (!add_if_any(far) || !second || !is_near_corner(far.gap, lengths_.corner)) return;
+  if (const auto other = along_other_face(far.gap, corners_at(far, query, memory)))
+    add_if_any({i, j, *other, 0.0});
 }
 
-/// The other contact where two sharp corners meet. \param first changes if the other one comes first
-std::optional<GapPoint> BodyContacts::second_at_corner(BodyTouch& first, const ContactQuery& query,
-                                                       const BodyContactSearch& memory) const {
-  const BodyOutline &a = outlines_.list()[first.a], &b = outlines_.list()[first.b];
+/// The corners of two sharp outlines that are nearest to a contact.
+CornerMeeting BodyContacts::corners_at(const BodyTouch& touch, const ContactQuery& query,
+                                       const BodyContactSearch& memory) const {
+  const BodyOutline &a = outlines_.list()[touch.a], &b = outlines_.list()[touch.b];
   const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
-  GapPoint& gap = first.gap;
-  Index i = gap.feature_a, j = gap.feature_b;
-  if (gap.kind == GapKind::edge_of_a) i = nearer_end(of_a, i, of_b.vertices[j]);
-  if (gap.kind == GapKind::edge_of_b) j = nearer_end(of_b, j, of_a.vertices[i]);
+  const auto [i, j] = nearest_corners(of_a, of_b, touch.gap);
   CornerMeeting meeting{SharpCorner::of(of_a, i), SharpCorner::of(of_b, j), lengths_.corner};
   meeting.lasts = query.lasting != nullptr && query.lasting->contains({a.vertex(i), b.surface()}) &&
                   query.lasting->contains({a.surface(), b.vertex(j)});
-  meeting.velocity = velocity_at(memory.sides[first.a], query.state.v, meeting.a.at) -
-                     velocity_at(memory.sides[first.b], query.state.v, meeting.b.at);
-  return second_contact(gap, meeting);
+  meeting.velocity = velocity_at(memory.sides[touch.a], query.state.v, meeting.a.at) -
+                     velocity_at(memory.sides[touch.b], query.state.v, meeting.b.at);
+  return meeting;
 }
 
 /// Adds a contact of the step before that is a little open, where turning explains that.

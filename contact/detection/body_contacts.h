@@ -27,6 +27,8 @@
 
 namespace carom {
 
+struct CornerMeeting;
+
 /// Two outlines that touch, before the rows of their contact are written.
 struct BodyTouch {
   Index a = none, b = none;       ///< places of the outlines, that of the lesser key first
@@ -104,8 +106,8 @@ private:
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;
-  [[nodiscard]] std::optional<GapPoint> second_at_corner(BodyTouch& first, const ContactQuery& query,
-                                                         const BodyContactSearch& memory) const;
+  [[nodiscard]] CornerMeeting corners_at(const BodyTouch& touch, const ContactQuery& query,
+                                         const BodyContactSearch& memory) const;
   void add_lasting(BodyTouch touch, const ContactQuery& query, BodyContactSearch& memory) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b, const GapPoint& gap,
             const StateView& state, Constraint& out) const;

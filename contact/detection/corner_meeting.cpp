@@ -10,6 +10,10 @@ namespace carom {
 
 namespace {
 
+// Directions that differ by less are one: rows that say the same, but for rounding of what they lead to
+// [rad].
+constexpr double one_direction = 1e-6;
+
 double turn_between(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
 /// Outward normals of the two edges at a corner.
@@ -67,8 +71,6 @@ std::optional<CommonCone> common_cone(const SharpCorner& a, const SharpCorner& b
   } else {
     return {};
   }
-  constexpr double one_direction =
-      1e-6;  // rows that say the same, but for rounding of what they lead to [rad]
   if (turn_between(cone.lower.normal, cone.upper.normal) <= one_direction) return {};
   return cone;
 }
@@ -128,6 +130,23 @@ std::optional<GapPoint> second_contact(GapPoint& first, const CornerMeeting& mee
   second.feature_a = a.vertex;
   second.feature_b = b.vertex;
   return second;
+}
+
+std::optional<GapPoint> along_other_face(const GapPoint& contact, const CornerMeeting& meeting) {
+  const SharpCorner &a = meeting.a, &b = meeting.b;
+  const bool is_other_of_a = contact.kind == GapKind::edge_of_b;
+  const CornerNormals normals(is_other_of_a ? a : b);
+  if (contact.kind == GapKind::vertices || !normals.exist) return {};
+  const Vec<2> outwards = is_other_of_a ? Vec<2>(-contact.normal) : contact.normal;  // of what has the face
+  constexpr double cosine_of_parallel = 0.9;
+  for (const bool is_behind : {false, true}) {
+    const Vec<2>& face = is_behind ? normals.behind : normals.before;
+    if (face.dot(outwards) < cosine_of_parallel) continue;
+    if (std::abs(turn_between(face, outwards)) <= one_direction) continue;
+    const GapPoint other = gap_along({outwards, is_other_of_a, is_behind}, a, b);
+    if (std::abs(other.gap - contact.gap) <= meeting.same_place) return other;
+  }
+  return {};
 }
 
 }  // namespace carom

@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace carom {
 
@@ -50,6 +51,15 @@ struct SharpCorner {
   const Index tail = edge - outline.size(), head = outline.after(tail);
   const Vec<2> from_tail = point - outline.vertices[tail], from_head = point - outline.vertices[head];
   return from_head.squaredNorm() < from_tail.squaredNorm() ? head : tail;
+}
+
+/// Numbers of the vertices of two outlines that are nearest to a contact of them, of a and of b.
+[[nodiscard]] inline std::pair<Index, Index> nearest_corners(const ConvexOutline& a, const ConvexOutline& b,
+                                                             const GapPoint& contact) {
+  Index i = contact.feature_a, j = contact.feature_b;
+  if (contact.kind == GapKind::edge_of_a) i = nearer_end(a, i, b.vertices[j]);
+  if (contact.kind == GapKind::edge_of_b) j = nearer_end(b, j, a.vertices[i]);
+  return {i, j};
 }
 
 /// An end of the directions that are normals of both corners: the normal of an edge that ends at a corner.
@@ -90,6 +100,13 @@ struct CornerMeeting {
   bool lasts = false;                ///< the corners touched along both ends in the step before
   Vec<2> velocity = Vec<2>::Zero();  ///< of corner a against corner b [m/s]
 };
+
+/// The contact along the other one of two faces that lie on each other, where outlines that overlap are
+/// separated by the same along both faces: nothing but the order of the outlines tells whose normal is that
+/// of a contact then, and forces may be along both. \param contact at the other end of the overlap than that
+/// where corners meet, of one corner and an edge
+[[nodiscard]] CAROM_API std::optional<GapPoint> along_other_face(const GapPoint& contact,
+                                                                 const CornerMeeting& meeting);
 
 /// False of a contact that is so far from the corners at hand that these do not meet, as nearly always.
 /// \param same_place how far apart places are that count as one [m]

@@ -1,4 +1,5 @@
 #include <carom/contact/detection/contact_name.h>
+#include <carom/contact/detection/corner_names.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/detection/rolling_resistance.h>
 
@@ -31,15 +32,30 @@ void Detector::find(Range components, const ContactQuery& query, std::vector<Con
   }
 }
 
+namespace {
+
+/// True if a contact had an impulse, or, of corners that meet, the other contact that they have: the two may
+/// change names from step to step. They follow one another in the list.
+bool is_pressed(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, std::size_t which) {
+  if (contacts[which].second != ContactMode::open) return true;
+  const auto is_other = [&](std::size_t i) {
+    return contacts[i].second != ContactMode::open &&
+           may_be_of_corners(contacts[i].first, contacts[which].first);
+  };
+  return (which > 0 && is_other(which - 1)) || (which + 1 < contacts.size() && is_other(which + 1));
+}
+
+}  // namespace
+
 void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, double step,
                         const OpeningSlack& slack, LastingContacts& out) const {
   out.start(step, slack);
   const bool no_slack = out.slack() == 0.0;
   const Layout& layout = *assembly_->layout();
   const GroundShapes& shapes = ground_.shapes();
-  for (const auto& entry : contacts) {
-    const ConstraintKey& key = entry.first;
-    const bool pressed = entry.second != ContactMode::open;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ConstraintKey& key = contacts[i].first;
+    const bool pressed = is_pressed(contacts, i);
     const bool of_bodies = key.b.owner != FeatureKey::Owner::obstacle;
     if (key.a.owner != FeatureKey::Owner::body || of_bodies) {
       out.add(key, pressed);

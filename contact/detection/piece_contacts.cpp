@@ -164,9 +164,7 @@ std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, In
   const ConvexOutline &of_a = search.placed, of_b = pieces_.view(on_ground);
   const double same_place = pieces_.lengths().corner;
   if (b.is_hollow() || of_a.radius + b.radius > 0.0 || !is_near_corner(first, same_place)) return {};
-  Index i = first.feature_a, j = first.feature_b;
-  if (first.kind == GapKind::edge_of_a) i = nearer_end(of_a, i, of_b.vertices[j]);
-  if (first.kind == GapKind::edge_of_b) j = nearer_end(of_b, j, of_a.vertices[i]);
+  const auto [i, j] = nearest_corners(of_a, of_b, first);
   if (!pieces_.is_corner(b.vertices.begin + j)) return {};
   CornerMeeting meeting{SharpCorner::of(of_a, i), corner_of(pieces_, on_ground, j), same_place};
   const BodyOutline& a = search.outline;

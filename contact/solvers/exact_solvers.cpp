@@ -56,8 +56,8 @@ void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> m
   // An answer that came with the problem has been tried by sweeps and their polish. Where it is good enough,
   // Lemke's method, which has to repeat its path then, finds hardly better ones at many times the cost.
   const bool suffices = state.report.residual <= tolerated_residual;
-  const bool done = (!knows_all && leave_open(problem, state)) || attempt(problem, first, state) ||
-                    suffices || attempt(problem, SolverId::lemke, state) ||
+  const bool done = (!knows_all && leave_open(problem, state)) || (!alone && fold(problem, state)) ||
+                    attempt(problem, first, state) || suffices || attempt(problem, SolverId::lemke, state) ||
                     attempt(problem, SolverId::projection, state) || approach(problem, state);
   if (!done && !(state.report.residual <= tolerated_residual)) {
     attempt(problem, SolverId::enumeration, state);
@@ -202,6 +202,36 @@ bool ExactSolvers::leave_open(const ContactProblem& problem, ExactAttempt& state
   state.report.tried = static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(id));
   keep(found, id, Outcome::solved, at_mode_boundary(problem, trial_, trial_xi_), state);
   return true;
+}
+
+// Takes the answer that is its own image of a problem that is. It is told as that of the solver of one half.
+bool ExactSolvers::fold(const ContactProblem& problem, ExactAttempt& state) {
+  if (!mirror_.find(problem)) return false;
+  const ContactProblem& half = mirror_.half();
+  half_impulse_.resize(static_cast<std::size_t>(half.rows()));
+  const bool alone = half.groups().size() == 1;
+  for (const SolverId id : {SolverId::single_contact, SolverId::principal_pivoting, SolverId::lemke}) {
+    if (alone != (id == SolverId::single_contact)) continue;
+    const SolverAnswer answer = solver(id)->solve(half, half_impulse_);
+    state.report.iterations += answer.iterations;
+    if (answer.outcome == Outcome::not_solved || answer.outcome == Outcome::no_solution) continue;
+    static_cast<void>(polish_.improve(half, half_impulse_, polish_steps));
+    trial_.resize(state.impulse.size());
+    trial_xi_.resize(state.impulse.size());
+    mirror_.unfold(half_impulse_, trial_);
+    problem.velocities(trial_, trial_xi_);
+    Residual found = residual(problem, trial_, trial_xi_);
+    if (found.value > polish_from) {
+      found = polish_.improve(problem, trial_, polish_steps);
+      problem.velocities(trial_, trial_xi_);
+    }
+    if (!(found.value <= accepted_residual)) continue;
+    ++state.applicable;
+    state.report.tried = static_cast<std::uint8_t>(state.report.tried | 1u << static_cast<unsigned>(id));
+    keep(found, id, answer.outcome, answer.degenerate || at_mode_boundary(problem, trial_, trial_xi_), state);
+    return state.report.residual <= accepted_residual;
+  }
+  return false;
 }
 
 bool ExactSolvers::enumerate(const ContactProblem& problem, ExactAttempt& state) {

@@ -7,6 +7,7 @@
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/contact_report.h>
 #include <carom/contact/solvers/contact_solver.h>
+#include <carom/contact/solvers/mirror_fold.h>
 #include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/pivoting_solvers.h>
 #include <carom/contact/solvers/projection_solver.h>
@@ -35,7 +36,8 @@ struct ExactAttempt {
 /// ends near an answer by problems nearby that are regular; up to three by enumeration of the modes when all
 /// else failed. An answer of sweeps that is good enough is only shown to principal pivoting. Contacts that
 /// all separate, and one with rolling resistance, get no impulses: where friction is strong the solvers might
-/// find another solution. Reuse it: its memory is kept.
+/// find another solution. A problem that is its own image in a mirror gets an answer that is so too
+/// (mirror_fold.h), where there is one. Reuse it: its memory is kept.
 class ExactSolvers {
 public:
   /// Tries solvers until an answer is accepted, and concludes.
@@ -53,6 +55,7 @@ private:
   bool approach(const ContactProblem& problem, ExactAttempt& state);
   bool solve_near(const ContactProblem& problem, double softness);
   bool leave_open(const ContactProblem& problem, ExactAttempt& state);
+  bool fold(const ContactProblem& problem, ExactAttempt& state);
   void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, ExactAttempt& state);
 
   SingleContactSolver single_;
@@ -62,8 +65,10 @@ private:
   SolutionList list_;
   NewtonPolish polish_;
   std::vector<double> trial_, trial_xi_;
-  ContactProblem near_;         // the problem, made regular
-  std::vector<double> anchor_;  // impulses at which it is the problem itself
+  ContactProblem near_;  // the problem, made regular
+  MirrorFold mirror_;
+  std::vector<double> half_impulse_;  // of what the mirror leaves
+  std::vector<double> anchor_;        // impulses at which it is the problem itself
 };
 
 }  // namespace carom

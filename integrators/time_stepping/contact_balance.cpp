@@ -4,12 +4,12 @@
 #include <carom/contact/contact_point.h>
 #include <carom/contact/contact_velocity.h>
 #include <carom/contact/fetch_contact.h>
+#include <carom/integrators/time_stepping/mode_after.h>
 #include <carom/integrators/time_stepping/start_keeper.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -62,12 +62,12 @@ public:
     tally.deepest_gap = std::min(tally.deepest_gap, at.gap);
     ContactRecord& entry = result_.next_record();
     entry.mode = answer.mode;
-    // Else an impact within the step, or contact up to it.
-    if (!(common_.time < in_.end_time)) result_.contact_modes.emplace_back(at.key, entry.mode);
     entry.impact = impact;
     write_place(at, entry);
     write_answer(answer, entry);
     book_rows(at, {before, jump.data()}, answer.impulses, work.sum, entry);
+    const bool is_last = !(common_.time < in_.end_time);  // else an impact, or contact up to it
+    if (is_last) result_.contact_modes.emplace_back(at.key, mode_after(at, entry, after_));
     if (at.type == ConstraintType::limit) tell_in_coordinate(at, entry);
   }
 

@@ -1,6 +1,7 @@
 // Problem: the direction of a lasting contact between bodies that turn is another one at the end of a step.
 
 #include <carom/integrators/time_stepping/contact_turning.h>
+#include <carom/integrators/time_stepping/kept_names.h>
 
 #include <algorithm>
 #include <cmath>
@@ -183,10 +184,14 @@ bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, co
   } else {
     const Constraint *const halfway = find_in(found_.middle, turned.start), *const last = find_in(
                                                                                 found_.end, turned.start);
-    if (halfway == nullptr || last == nullptr) return false;  // it has come to another feature, or parted
-    middle.jacobian = halfway->jacobian;
-    end.jacobian = last->jacobian;
-    end.surface_velocity = last->surface_velocity;
+    const double same_place = look_.detector().pieces().pieces().lengths().corner;
+    if (halfway == nullptr || last == nullptr) return false;  // it has parted
+    const Constraint* const on_way = become_of(turned.start, *halfway, found_.middle, same_place);
+    const Constraint* const at_end = become_of(turned.start, *last, found_.end, same_place);
+    if (on_way == nullptr || at_end == nullptr) return false;  // it has come to another feature
+    middle.jacobian = on_way->jacobian;
+    end.jacobian = at_end->jacobian;
+    end.surface_velocity = at_end->surface_velocity;
   }
   bool turns = false;
   turned.now.jacobian = middle.jacobian;

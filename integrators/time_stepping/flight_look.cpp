@@ -37,14 +37,19 @@ void FlightLook::rotate(const LocatedBody& at) {
 
 const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double share, double margin,
                                                 bool to_end) {
+  return find(at, share, margin, to_end, nullptr);
+}
+
+const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double share, double margin,
+                                                bool to_end, const LastingContacts* lasting) {
   StateView view = at.trial.end.view();
   view.time = share < 1.0 ? at.in.start.time + share * at.in.step : at.in.end_time;
   if (at.detector.needs_rotations()) rotate(at);
   at.detector.place(view.time, places_);
   if (to_end) at.detector.place(at.in.end_time, places_at_end_);
   found_.clear();
-  at.detector.find_of(at.body, {view, at.trial.at_end, places_, to_end ? &places_at_end_ : nullptr, margin},
-                      found_);
+  at.detector.find_of(
+      at.body, {view, at.trial.at_end, places_, to_end ? &places_at_end_ : nullptr, margin, lasting}, found_);
   return found_;
 }
 
@@ -55,19 +60,25 @@ const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double sh
   for (Index i = 0; i < at.slot.v_size; ++i) {
     way += at.in.step * at.kind.length_scale(at.slot.slot, i) * std::abs(at.trial.end.v[at.slot.v + i]);
   }
-  find(at, share, caution * way, to_end);
+  // Corners that meet do so as long as both of their contacts are closed.
+  lasting_.start(at.in.step);
+  for (const ConstraintKey& key : wanted) lasting_.add(key);
+  lasting_.finish();
+  find(at, share, caution * way, to_end, &lasting_);
   const auto is_found = [&](const ConstraintKey& key) {
     return std::any_of(found_.begin(), found_.end(),
                        [&](const Constraint& contact) { return contact.key == key; });
   };
   if (std::all_of(wanted.begin(), wanted.end(), is_found)) return found_;
-  return find(at, share, std::numeric_limits<double>::infinity(), to_end);
+  return find(at, share, std::numeric_limits<double>::infinity(), to_end, &lasting_);
 }
 
 void FlightLook::take(std::span<const ConstraintKey> wanted, std::vector<Constraint>& out) const {
   out.clear();
-  for (const Constraint& contact : found_) {
-    if (std::find(wanted.begin(), wanted.end(), contact.key) != wanted.end()) out.push_back(contact);
+  for (const ConstraintKey& key : wanted) {
+    const auto found = std::find_if(found_.begin(), found_.end(),
+                                    [&](const Constraint& contact) { return contact.key == key; });
+    if (found != found_.end()) out.push_back(*found);
   }
 }
 

@@ -4,6 +4,7 @@
 /// Looks at one body on its way through a step: where it is, and which shapes on ground are near.
 
 #include <carom/contact/detection/ground_shapes.h>
+#include <carom/contact/detection/lasting_contacts.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/motion_phase.h>
@@ -29,10 +30,15 @@ public:
   /// that the body is hardly farther from them than it moves in one; where it is, all are found.
   const std::vector<Constraint>& find(const LocatedBody& at, double share,
                                       std::span<const ConstraintKey> wanted, bool to_end);
-  /// Makes a list of some of those that were found last, in their order.
+  /// Makes a list of some of those that were found last, in the order in which they are wanted: the order in
+  /// which they are found follows gaps, which may be the same but for rounding.
   void take(std::span<const ConstraintKey> wanted, std::vector<Constraint>& out) const;
 
 private:
+  const std::vector<Constraint>& find(const LocatedBody& at, double share, double margin, bool to_end,
+                                      const LastingContacts* lasting);
+
+  LastingContacts lasting_;  // those that are wanted
   GroundPlaces places_, places_at_end_;
   std::vector<Constraint> found_;
 };

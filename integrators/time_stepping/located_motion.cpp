@@ -1,6 +1,7 @@
 // Problem: a step of one body that is hit at instants within it.
 
 #include <carom/core/dynamics/body_response.h>
+#include <carom/integrators/time_stepping/kept_names.h>
 #include <carom/integrators/time_stepping/located_motion.h>
 
 #include <algorithm>
@@ -225,15 +226,31 @@ bool LocatedMotion::fly_once(const LocatedBody& at, MotionPhase& flight) {
   return true;
 }
 
+/// Lists what the contacts of a flight have become on its way, as far as they are found.
+void LocatedMotion::take_turned(std::span<const Constraint> found, double same_place,
+                                std::vector<Constraint>& out) const {
+  out.clear();
+  for (const Constraint& begin : of_flight_.begin) {
+    const auto named = std::find_if(found.begin(), found.end(),
+                                    [&](const Constraint& contact) { return contact.key == begin.key; });
+    if (named == found.end()) continue;
+    const Constraint* const now = become_of(begin, *named, found, same_place);
+    if (now == nullptr) continue;
+    out.push_back(*now);
+    out.back().key = begin.key;
+  }
+}
+
 /// Brings the contacts of a flight to the directions halfway. What these make of the velocities at both ends,
 /// beyond what the directions there make of them, is taken for a motion of the ground. False, and nothing is
 /// changed, if the body leaves the face of one on the way.
 bool LocatedMotion::turn(const LocatedBody& at, MotionPhase& flight) {
   const double* const v = at.trial.end.v.data();
+  turned_.clear();
+  for (const Constraint& contact : flight.constraints) turned_.push_back(contact.key);
   const auto find = [&](double share, std::vector<Constraint>& out) {
     FlightLook::go(at, flight, share);
-    look_.find(at, share, closed_, false);
-    look_.take(closed_, out);
+    take_turned(look_.find(at, share, turned_, false), at.detector.pieces().pieces().lengths().corner, out);
   };
   find(0.5 * (flight.begin + flight.end), of_flight_.next_middle);
   find(flight.end, of_flight_.next_end);

@@ -58,6 +58,7 @@ private:
   [[nodiscard]] bool fly_along_begin(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool fly_once(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool solve(const LocatedBody& at, MotionPhase& phase);
+  void take_turned(std::span<const Constraint> found, double same_place, std::vector<Constraint>& out) const;
   [[nodiscard]] bool turn(const LocatedBody& at, MotionPhase& flight);
   void book_turning(MotionPhase& flight) const;
   [[nodiscard]] bool gains(const LocatedBody& at, const MotionPhase& flight) const;
@@ -72,6 +73,7 @@ private:
     std::vector<Constraint> begin, middle, end, next_middle, next_end;
   } of_flight_;                        // its contacts then
   std::vector<ConstraintKey> closed_;  // contacts that take part in what comes next
+  std::vector<ConstraintKey> turned_;  // those of a flight
   std::vector<ConstraintKey> parted_;  // of these, those that have not pushed in the flight before
   std::vector<MotionPhase> phases_;
   std::size_t used_ = 0;

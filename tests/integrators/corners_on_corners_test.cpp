@@ -295,7 +295,7 @@ Scene random_scene(Random& random) {
   scene.pieces.push_back(on_corner(random));
   scene.pieces[1].position[1] += 0.05 * random.below(2);
   for (int k = 0; k < 3; ++k) {
-    Piece piece{.position = {random.uniform(-0.6, 0.6), 0.55 + 0.4 * k},
+    Piece piece{.position = {random.uniform(-0.6, 0.6), 0.65 + 0.4 * k},
                 .angle = random.uniform(-3.0, 3.0),
                 .mass = random.uniform(0.3, 3.0),
                 .velocity = random.vec<2>(),
@@ -330,49 +330,88 @@ Scene symmetric_scene(Random& random) {
 
 // Rounding grows with every impact, by some tens.
 constexpr double largest_asymmetry = 1e-7;
-// Faces of bodies and of their images that meet almost flat, after a step deep in each other, are held by one
-// of the two normals.
-constexpr double largest_of_overlap = 1e-3;
 
-double allowed_in(Mode run) { return run == Mode::steps ? largest_of_overlap : largest_asymmetry; }
-
-/// Scenes of so many that may differ from their images: bodies whose corners overlap deep after a step are
-/// held by one normal of two in time stepping, and which impact of a cluster is located first is decided by
-/// rounding.
-int allowed_to_differ(Mode run, const carom_test::SeedRange& seeds) {
-  const int count = seeds.count();
-  if (run == Mode::events) return 1 + count / 50;
-  return run == Mode::located ? 1 + count / 6 : 1 + count / 10;
+/// A scene whose bodies are moved by 1e-12 m, which is nothing to them, and about a hundred roundings.
+Scene moved_by_nothing(const Scene& scene, Random& random) {
+  constexpr double nothing = 1e-12;
+  Scene out = scene;
+  for (Piece& piece : out.pieces) {
+    if (!piece.on_ground) piece.position += nothing * random.vec<2>();
+  }
+  return out;
 }
+
+/// Pieces in their own places.
+std::vector<std::size_t> themselves(const Scene& scene) {
+  std::vector<std::size_t> out(scene.pieces.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = i;
+  return out;
+}
+
+/// True of a scene whose end nothing decides: moved by 1e-12 m it ends elsewhere too, as where several
+/// closings follow each other at once, in an order that rounding tells. Such a scene is chaotic, and not
+/// asymmetric.
+bool is_undecided(const Scene& scene, const Running& end, Mode run, double until) {
+  Random random(1);
+  for (int trial = 0; trial < 8; ++trial) {
+    Running moved(moved_by_nothing(scene, random), run);
+    moved.simulation.run_until(until);
+    for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+      if (scene.pieces[i].on_ground) continue;
+      if ((moved.place(i) - end.place(i)).cwiseAbs().maxCoeff() > largest_asymmetry) return true;
+    }
+  }
+  return false;
+}
+
+/// Scenes that differ from their images, or end in a named error.
+struct Differing {
+  int decided = 0, undecided = 0, failed = 0;
+
+  /// Runs a scene and what is to be its image. \param image by piece, in the second
+  void take(const Scene& scene, const Scene& second, const std::vector<std::size_t>& image, Mode run,
+            double until) try {
+    Running one(scene, run), other(second, run);
+    one.simulation.run_until(until);
+    other.simulation.run_until(until);
+    if (asymmetry(scene, one, other, image) < largest_asymmetry) return;
+    ++(is_undecided(scene, one, run, until) ? undecided : decided);
+  } catch (const SolverError&) {
+    ++failed;
+  }
+  /// Measured, of 1000 mirrored and 1000 symmetric scenes: in steps 1 decided one and 3 undecided ones
+  /// differ, located none and 26, with events none and 11. Contacts that jam end 5 of the located ones in a
+  /// named error, closings at one instant 1 of those with events. The decided one has a contact problem with
+  /// several answers, of which principal pivoting takes one by the order of the contacts.
+  void expect_few(const carom_test::SeedRange& seeds) const {
+    const int count = seeds.count();
+    EXPECT_LE(decided, count / 250);
+    EXPECT_LE(undecided, 1 + count / 20);
+    EXPECT_LE(failed, 1 + count / 200);
+  }
+};
 
 /// Runs scenes and their images. \param until so far [s]
 void expect_mirrored(Mode run, const carom_test::SeedRange& seeds, double until) {
-  int differ = 0;
+  Differing differing;
   for (std::uint64_t number = seeds.first; number < seeds.last; ++number) {
     SCOPED_TRACE("scene " + std::to_string(number));
     Random random(number);
     const Scene scene = random_scene(random);
-    Running one(scene, run), other(scene.in_mirror(), run);
-    one.simulation.run_until(until);
-    other.simulation.run_until(until);
-    std::vector<std::size_t> same(scene.pieces.size());
-    for (std::size_t i = 0; i < same.size(); ++i) same[i] = i;
-    differ += asymmetry(scene, one, other, same) < largest_asymmetry ? 0 : 1;
+    differing.take(scene, scene.in_mirror(), themselves(scene), run, until);
   }
-  EXPECT_LE(differ, allowed_to_differ(run, seeds));
+  differing.expect_few(seeds);
 }
 
 void expect_symmetric(Mode run, const carom_test::SeedRange& seeds, double until) {
-  int differ = 0;
+  Differing differing;
   for (std::uint64_t number = seeds.first; number < seeds.last; ++number) {
     SCOPED_TRACE("scene " + std::to_string(number));
     Random random(number);
     const Scene scene = symmetric_scene(random);
-    Running now(scene, run);
-    now.simulation.run_until(until);
-    differ += asymmetry(scene, now, now, {0, 1, 3, 2, 5, 4}) < allowed_in(run) ? 0 : 1;
+    differing.take(scene, scene, {0, 1, 3, 2, 5, 4}, run, until);
   }
-  EXPECT_LE(differ, allowed_to_differ(run, seeds));
+  differing.expect_few(seeds);
 }
 
 TEST_P(Corners, AMirroredSceneMovesAsInTheMirror) { expect_mirrored(GetParam(), {100, 120}, 0.3); }

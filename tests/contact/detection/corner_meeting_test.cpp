@@ -120,4 +120,39 @@ TEST(CornerMeeting, CornersMeetInOnePlaceWhenTheyCameFromThereAndWhereTheyDidBef
   EXPECT_FALSE(meets(1e-3 * along, along, false));  // or along an edge
 }
 
+// Two outlines with faces that lie on each other, turned by `turn` against the line x = 0 between them,
+// either the image of the other: at the end of the overlap away from where corners meet, either face has a
+// contact.
+TEST(CornerMeeting, FacesThatSeparateEquallyHaveAContactEach) {
+  Random random(7);
+  for (int trial = 0; trial < 100; ++trial) {
+    SCOPED_TRACE(trial);
+    const double turn = random.uniform(1e-4, 0.2), depth = random.uniform(0.0, 1e-2);
+    // The upper right corner of the left outline, and its image.
+    const SharpCorner b = corner_of_normals(-turn, random.uniform(0.2, 1.5), {depth, 0.0});
+    SharpCorner a;
+    const auto in_mirror = [](const Vec<2>& point) { return Vec<2>(-point[0], point[1]); };
+    a = {in_mirror(b.behind), in_mirror(b.at), in_mirror(b.before), false, 0, 4, 3};
+    CornerMeeting meeting{a, b, 1e-9};
+    const GapPoint first = gap_along({direction(-turn), false, false}, a, b);
+    ASSERT_EQ(first.kind, GapKind::edge_of_b);
+    const std::optional<GapPoint> other = along_other_face(first, meeting);
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->kind, GapKind::edge_of_a);
+    EXPECT_NEAR((other->normal - direction(turn)).norm(), 0.0, 1e-14);
+    EXPECT_NEAR(other->gap, first.gap, 1e-14);
+    // Where one of them lies farther in the other, its face is no longer the one that separates.
+    meeting.a.at[1] += 1e-3;
+    meeting.a.before[1] += 1e-3;
+    meeting.a.behind[1] += 1e-3;
+    EXPECT_FALSE(along_other_face(first, meeting));
+  }
+}
+
+TEST(CornerMeeting, FacesThatLieFlatOnEachOtherHaveOneContact) {
+  const SharpCorner b = corner_of_normals(0.0, 1.0), a = corner_of_normals(2.0, pi);
+  const GapPoint first = gap_along({direction(0.0), false, false}, a, b);
+  EXPECT_FALSE(along_other_face(first, {a, b, 1e-9}));
+}
+
 }  // namespace
