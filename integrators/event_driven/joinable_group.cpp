@@ -142,6 +142,7 @@ void JoinableGroup::part(const ClockGroup& last, State& state, EventBalance& bal
   group_->impacts.start();
   group_->impacts.take(from.impacts);
   group_->modes.start();
+  group_->modes.take(from.modes, from.clock.now);  // an end that follows at once is another one
   group_->detector.start();
   group_->flow.keep_step(from.flow.kept_step());
   group_->motion.active().list().clear();

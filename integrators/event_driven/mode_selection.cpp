@@ -87,8 +87,15 @@ void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
 
 void ModeSelection::take(const ModeSelection& other, double time) {
   if (other.ended_at_ != time) return;
-  exhausted_.insert(exhausted_.end(), other.exhausted_.begin(), other.exhausted_.end());
-  releasing_.insert(releasing_.end(), other.releasing_.begin(), other.releasing_.end());
+  // Parts of one group remember the same: no end counts twice.
+  for (const ExhaustedFriction& end : other.exhausted_) {
+    const auto known = std::ranges::find(exhausted_, end.pair, &ExhaustedFriction::pair);
+    if (known == exhausted_.end()) exhausted_.push_back(end);
+  }
+  for (const ContactPair& end : other.releasing_) {
+    if (std::ranges::count(releasing_, end) < std::ranges::count(other.releasing_, end))
+      releasing_.push_back(end);
+  }
   ended_at_ = time;
   if (other.stopped_ != ContactPair{}) stopped_ = other.stopped_;
 }
