@@ -268,7 +268,7 @@ bool ActiveSet::react(std::size_t first, std::size_t last, double* acceleration)
     if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
   }
   memory_->delassus.add_response(unknown, acceleration);
-  if (factors.rank() < n) memory_->margins.add(contacts_, first, last, rows, factors);
+  if (factors.rank() < n) memory_->margins.add(first, last, rows, factors);
   // Where rows depend on others, what is left in them is not of rounding.
   if (solved && n > 1 && factors.rank() == n) refine(size, acceleration);
   return solved;

@@ -90,7 +90,7 @@ public:
   /// feels, as ForceMargins::for_vectors(): others may have found other forces.
   template <class F>
   void for_open_forces(F&& f) const {
-    memory_->margins.for_vectors(f);
+    memory_->margins.for_vectors(contacts_, f);
   }
   /// Margins of the forces of the last add_reactions(), a number for every island of bodies that touch. Where
   /// forces are not unique, they are distributed so that the margin is largest.

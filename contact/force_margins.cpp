@@ -43,12 +43,28 @@ std::size_t lines_of(const ActiveContact& contact) {
 }  // namespace
 
 void ForceMargins::clear() {
+  count_ = 0;
   vectors_.clear();
   numbers_.clear();
 }
 
-void ForceMargins::add(std::span<const ActiveContact> contacts, std::size_t first, std::size_t last,
-                       std::span<const ContactPivot::Row> rows, const FullPivoting& factors) {
+void ForceMargins::add(std::size_t first, std::size_t last, std::span<const ContactPivot::Row> rows,
+                       const FullPivoting& factors) {
+  if (count_ == groups_.size()) groups_.emplace_back();
+  Group& group = groups_[count_++];
+  group.first = first;
+  group.last = last;
+  group.rows.assign(rows.begin(), rows.end());
+  group.factors = factors;
+}
+
+void ForceMargins::find_vectors(std::span<const ActiveContact> contacts) {
+  if (!vectors_.empty()) return;
+  for (std::size_t i = 0; i < count_; ++i) append_vectors(contacts, groups_[i]);
+}
+
+void ForceMargins::append_vectors(std::span<const ActiveContact> contacts, const Group& of) {
+  const auto& [first, last, rows, factors] = of;
   for (std::size_t free = factors.rank(); free < factors.size(); ++free) {
     factors.null_vector(free, work_);
     vectors_.push_back({first, last, numbers_.size()});
@@ -118,6 +134,7 @@ double ForceMargins::least(std::span<const ActiveContact> contacts) {
 }
 
 void ForceMargins::distribute(std::span<ActiveContact> contacts, bool mark) {
+  find_vectors(contacts);
   for (std::size_t at = 0; at < vectors_.size();) {
     std::size_t next = at + 1;
     while (next < vectors_.size() && vectors_[next].first == vectors_[at].first) ++next;

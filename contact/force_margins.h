@@ -26,20 +26,22 @@ class CAROM_API ForceMargins {
 public:
   /// Forgets all groups.
   void clear();
-  /// Adds the null vectors of a group. \param contacts all, \param first,last those of the group
-  /// \param rows of the equations \param factors of their matrix, with rank() < size()
-  void add(std::span<const ActiveContact> contacts, std::size_t first, std::size_t last,
-           std::span<const ContactPivot::Row> rows, const FullPivoting& factors);
+  /// Adds a group. Its null vectors are found when they are asked for: most forces that a flow needs are not
+  /// asked for margins. \param first,last its contacts \param rows of the equations \param factors of their
+  /// matrix, with rank() < size()
+  void add(std::size_t first, std::size_t last, std::span<const ContactPivot::Row> rows,
+           const FullPivoting& factors);
   /// Distributes forces that are not unique so that margins are largest. Lines of contacts that are at the
   /// least margin by chance do not set it (ActiveContact::sets_margin).
   /// \param mark whether to find out which contacts set the margin
   void distribute(std::span<ActiveContact> contacts, bool mark);
   /// True if there are null vectors.
-  [[nodiscard]] bool has_vectors() const { return !vectors_.empty(); }
+  [[nodiscard]] bool has_vectors() const { return count_ > 0; }
   /// Calls f(first, numbers) for every null vector, numbers: a normal and a tangential force for each contact
-  /// of a group in turn, beginning with the contact `first`.
+  /// of a group in turn, beginning with the contact `first`. \param contacts all, as they were added
   template <class F>
-  void for_vectors(F&& f) const {
+  void for_vectors(std::span<const ActiveContact> contacts, F&& f) {
+    find_vectors(contacts);
     for (const NullVector& vector : vectors_) {
       f(vector.first, std::span(numbers_).subspan(vector.begin, 2 * (vector.last - vector.first)));
     }
@@ -55,6 +57,13 @@ private:
   struct Line {
     double at = 0.0, slope = 0.0;  // a margin along a null vector
   };
+  struct Group {
+    std::size_t first = 0, last = 0;  // contacts
+    std::vector<ContactPivot::Row> rows;
+    FullPivoting factors;
+  };
+  void find_vectors(std::span<const ActiveContact> contacts);
+  void append_vectors(std::span<const ActiveContact> contacts, const Group& of);
   void collect(std::span<const ActiveContact> contacts, const double* vector);
   void bound_wedged(std::span<const ActiveContact> contacts);
   [[nodiscard]] double least_at(double shift) const;
@@ -63,7 +72,9 @@ private:
                                 bool mark);
   void state_lines(std::span<const ActiveContact> contacts, std::size_t from, std::size_t to);
 
-  std::vector<NullVector> vectors_;
+  std::vector<Group> groups_;        // those added, and memory of more
+  std::size_t count_ = 0;            // of those added
+  std::vector<NullVector> vectors_;  // empty: not found yet
   std::vector<double> numbers_, work_;
   std::vector<Line> lines_;
   LargestMargin program_;  // forces of more than one freedom

@@ -8,7 +8,56 @@
 #include <numeric>
 #include <utility>
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+#endif
+
 namespace carom {
+
+namespace {
+
+/// Numbers of a row that an elimination changes: row -= factor times that of the pivot.
+struct RowChange {
+  double* row;
+  const double* of_pivot;
+  double factor;
+  std::size_t count;
+};
+
+/// Changes a row, and returns the size of its largest number then; -1 of none.
+double change_from(std::size_t begin, const RowChange& of, double largest) {
+  for (std::size_t j = begin; j < of.count; ++j) {
+    of.row[j] -= of.factor * of.of_pivot[j];
+    largest = std::max(largest, std::abs(of.row[j]));
+  }
+  return largest;
+}
+
+#if defined(__x86_64__) && defined(__GNUC__)
+// Four numbers at a time, in one pass. No fused multiply-add: the same bits.
+[[gnu::target("avx2")]] double change_by_fours(const RowChange& of) {
+  const __m256d factor = _mm256_set1_pd(of.factor), sign = _mm256_set1_pd(-0.0);
+  __m256d sizes = _mm256_set1_pd(-1.0);
+  std::size_t j = 0;
+  for (; j + 4 <= of.count; j += 4) {
+    const __m256d product = _mm256_mul_pd(factor, _mm256_loadu_pd(of.of_pivot + j));
+    const __m256d left = _mm256_sub_pd(_mm256_loadu_pd(of.row + j), product);
+    _mm256_storeu_pd(of.row + j, left);
+    sizes = _mm256_max_pd(_mm256_andnot_pd(sign, left), sizes);
+  }
+  const __m128d halves = _mm_max_pd(_mm256_castpd256_pd128(sizes), _mm256_extractf128_pd(sizes, 1));
+  const double largest = std::max(_mm_cvtsd_f64(halves), _mm_cvtsd_f64(_mm_unpackhi_pd(halves, halves)));
+  return change_from(j, of, largest);
+}
+const bool by_fours = __builtin_cpu_supports("avx2") != 0;
+#else
+constexpr bool by_fours = false;
+double change_by_fours(const RowChange& of) { return change_from(0, of, -1.0); }
+#endif
+
+double change(const RowChange& of) { return by_fours ? change_by_fours(of) : change_from(0, of, -1.0); }
+
+}  // namespace
 
 void FullPivoting::reset(std::size_t n) {
   rank_ = n;
@@ -89,9 +138,8 @@ bool FullPivoting::solve(double dependent, std::vector<double>& right) {
       double* const row = matrix_.data() + row_order_[i] * n;
       if (row[step] == 0.0) continue;  // its largest number is elsewhere
       const double factor = row[step] / of_pivot[step];
-      for (std::size_t j = step + 1; j < n; ++j) row[j] -= factor * of_pivot[j];
       right[row_order_[i]] -= factor * right[row_order_[step]];
-      row_sizes_[row_order_[i]] = largest_from(row, step + 1);
+      row_sizes_[row_order_[i]] = change({row + step + 1, of_pivot + step + 1, factor, n - step - 1});
     }
   }
   return substitute(right);

@@ -95,7 +95,7 @@ void BodyFlights::start(const State& state, double extra) {
 double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, MotionSample& end) {
   const SmoothMotion& motion = group.motion();
   const bool is_free = motion.is_ballistic();
-  JoinableGroup(group).sample(time, false, now);
+  JoinableGroup(group).sample(time, false, Forces::all, now);
   const auto for_flights = [&](auto&& f) {
     for (const MotionUnknowns::Part& part : motion.model().parts()) {
       for (Index body = part.ranges.bodies.begin; body < part.ranges.bodies.end; ++body) {
@@ -114,7 +114,7 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
   });
   const double due = JoinableGroup(group).due();
   const bool rests = !(due < never);
-  if (!is_free && !rests) JoinableGroup(group).sample(due, false, end);
+  if (!is_free && !rests) JoinableGroup(group).sample(due, false, Forces::all, end);
   for_flights([&](Index body, BodyFlight& flight) {
     if (rests) flight.velocity = flight.acceleration = Vec<2>::Zero();  // but for rounding
     if (is_free) return;

@@ -16,7 +16,7 @@ namespace {
 class StepPath final : public PairPath {
 public:
   explicit StepPath(SearchedStep& step) : step_(&step) {}
-  [[nodiscard]] const MotionSample& sample(double time) override { return step_->sample(time); }
+  [[nodiscard]] const MotionSample& sample(double time) override { return step_->sample_for_gaps(time); }
 
 private:
   SearchedStep* step_;

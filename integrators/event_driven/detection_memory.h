@@ -6,6 +6,7 @@
 #include <carom/contact/force_margins.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/guard_samples.h>
+#include <carom/integrators/event_driven/known_accelerations.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/event_driven/step_ends.h>
 
@@ -28,12 +29,13 @@ struct CAROM_API DetectionMemory {
   std::vector<double> y;                  ///< there
   std::vector<double> path_acceleration;  ///< likewise, along the path of a step
   std::vector<ForceMargin> margins;
-  GuardSample located;          ///< where an event is located
-  GuardSamples samples;         ///< within one step,
-  GuardSamples path_samples;    ///< of guards of elements along its path
-  StepEnds ends;                ///< of the step
-  std::vector<char> is_active;  ///< by pair: closed at both ends
-  FalseAlarms passed_over;      ///< in the step
+  GuardSample located;               ///< where an event is located
+  GuardSamples samples;              ///< within one step,
+  GuardSamples path_samples;         ///< of guards of elements along its path
+  KnownAccelerations accelerations;  ///< where gaps were looked at
+  StepEnds ends;                     ///< of the step
+  std::vector<char> is_active;       ///< by pair: closed at both ends
+  FalseAlarms passed_over;           ///< in the step
 };
 
 }  // namespace carom

@@ -116,6 +116,7 @@ Event EventDetector::search(Flow& flow, double time, std::span<const double> y, 
       return unbounded_at(time, y, "closed contacts come to follow from each other");
     memory_->samples.forget();
     memory_->path_samples.forget();
+    memory_->accelerations.forget();
     landing_.time = never;
     const Event event = first(step);
     if (makes_no_progress(step, event) && finds_unbounded_force(flow.end(), flow.state().data())) {

@@ -154,7 +154,7 @@ Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event befo
     rule.least_depth = moving ? least_of_moving : 0;
     const double curvature = std::max(start.gaps[i].curvature_bound, end.gaps[i].curvature_bound);
     QuantityOf gap([&](double time) -> QuantityLook {
-      const MotionSample& at = step.sample(time);
+      const MotionSample& at = step.sample_for_gaps(time);
       Constraint contact;
       step.motion.contact(i, at, contact);
       return {time,

@@ -24,13 +24,25 @@ bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, Solv
   // A contact that parts at the capture speed has come back by then.
   const double time = 2.0 * capture_ / pull;
   for (Constraint& contact : touching_) contact.of_joint.friction_bound *= time;  // of friction in a joint
-  if (!solve_ahead(time, touching_, at, ahead_, problem_, chain) || !list_held(at)) return false;
-  if (!closing_.close(held_, pairs, at)) return false;
+  if (!solve_ahead(time, touching_, at, ahead_, problem_, chain) || !close(pairs, at)) return false;
   // What is left of sliding is slower than constraints can tell: it counts as stopped.
   for (const ActiveContact& held : held_) {
     if (held.sticks()) at.stopped.push_back(held.place);
   }
   return true;
+}
+
+/// Closes what is held. Where to stop all that slides slowly is to stop a mechanism that moves on (a heap of
+/// dominoes that another one pushes), a part of it, slower by far, is not what guides that: else each contact
+/// would come to rest by an event of its own, and what lifts meanwhile would fall again, and so on.
+bool ImpactSettling::close(std::span<const Index> pairs, EventInstant& at) {
+  constexpr int most_levels = 5;  // each costs projections; down to 1/256 of the capture speed
+  constexpr double slower = 0.25;
+  slow_ = capture_;
+  for (int level = 0; level < most_levels && list_held(at); ++level, slow_ *= slower) {
+    if (closing_.close(held_, pairs, at)) return true;
+  }
+  return false;
 }
 
 /// Lists what touches and does not fly off. False if nothing is left to settle, or no bodies touch each
@@ -83,7 +95,7 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     const double sliding = has_friction(contact) ? contact.sliding_speed(at.velocities()) : 0.0;
     // A contact at rest is not to start by what stops others: accelerations decide about that.
     const bool sticks =
-        has_friction(contact) && sliding <= capture_ && (sliding <= noise || comes_to_rest(c, at));
+        has_friction(contact) && sliding <= slow_ && (sliding <= noise || comes_to_rest(c, at));
     if (in_joint && !sticks) continue;
     any = any || -at.approach(place) > noise || (sticks && sliding > noise);
     ActiveContact& held = held_.emplace_back();

@@ -36,6 +36,7 @@ public:
 
 private:
   [[nodiscard]] bool list_touching(std::span<const Index> pairs, const EventInstant& at);
+  [[nodiscard]] bool close(std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] bool comes_to_rest(std::size_t c, const EventInstant& at) const;
   [[nodiscard]] bool list_held(const EventInstant& at);
 
@@ -45,6 +46,7 @@ private:
   std::vector<double> ahead_;  // velocities
   std::vector<ActiveContact> held_;
   double capture_ = 0.0;  // capture speed [m/s]
+  double slow_ = 0.0;     // sliding up to which is stopped, at most that [m/s]
   ContactClosing closing_;
 };
 

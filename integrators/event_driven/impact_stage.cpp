@@ -130,11 +130,31 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
   if (closes_slow) close_captured(pairs, at);
 }
 
+/// False where there are no impulses, or none that stop what approaches.
 bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
   JointReactions& joints = at.motion.joints();
   joints.build(problem, memory_->touching, at.velocities());
   problem.set_free_velocity(at.velocities());
-  return joints.solve(problem, memory_->touching, at.now, *chain_);
+  return joints.solve(problem, memory_->touching, at.now, *chain_) && stops(problem);
+}
+
+/// True if less than half is left of the approach: else impacts follow each other without end. Where bodies
+/// have no room impulses grow until nothing is left against what they do: to the certificate they are an
+/// answer then. Laws other than Newton's solve their own problems, one contact has its answer in closed form.
+bool ImpactStage::stops(const IslandProblem& problem) {
+  constexpr double most_left = 0.5;
+  const ContactProblem& stated = problem.problem();
+  if (&problem != &memory_->problem || stated.groups().size() < 2) return true;
+  std::vector<double>& xi = memory_->velocities_after;
+  xi.resize(problem.impulses().size());
+  stated.velocities(problem.impulses(), xi);
+  double approach = 0.0, left = 0.0;
+  for (std::size_t row = 0; row < xi.size(); ++row) {
+    if (stated.sets()[row].kind != SetKind::half_line) continue;
+    approach = std::max(approach, -stated.vector()[row]);
+    left = std::max(left, -xi[row]);
+  }
+  return left <= most_left * approach;
 }
 
 /// The problem that is solved by the law of its contacts. Fails where they have different ones.
@@ -194,11 +214,12 @@ void ImpactStage::leave_out_repeated(double gap_noise) {
   memory_->places.resize(kept);
 }
 
-void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant& at) const {
+void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant& at) {
   const std::vector<Constraint>& touching = memory_->touching;
-  // Solved at each bound of friction in joints, which do not come to an end.
-  const std::string why =
-      problem.report().usable() ? unsettled_friction : std::string(to_string(problem.report().outcome));
+  // Solved at each bound of friction in joints, which do not come to an end; or by impulses without bound.
+  const std::string why = !problem.report().usable() ? std::string(to_string(problem.report().outcome))
+                          : stops(problem)           ? unsettled_friction
+                                                     : "no impulses stop what approaches";
   std::string what =
       "the contact problem of an impact is not solved (" + why + at.motion.model().driven() + ")";
   if (problem.report().outcome == Outcome::no_solution) what += "; " + fastest_of(touching, at.velocities());

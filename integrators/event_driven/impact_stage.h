@@ -48,7 +48,8 @@ struct ImpactMemory {
   std::vector<Constraint> touching;  ///< constraints of the problem,
   std::vector<Index> places;         ///< and their pairs, as long as all of these are in it
   std::vector<ActiveContact> captured;
-  std::vector<ImpactCounts> counts;  ///< by island
+  std::vector<ImpactCounts> counts;      ///< by island
+  std::vector<double> velocities_after;  ///< of the problem's rows, W P + b
   ImpactSolver by_law;
   ImpactNote note;  ///< of the impact at hand
   ImpactSettling settling;
@@ -82,6 +83,7 @@ private:
   [[nodiscard]] double fastest_approach(std::span<const Index> pairs, const EventInstant& at) const;
   void resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts, EventInstant& at);
   [[nodiscard]] bool solve(IslandProblem& problem, EventInstant& at);
+  [[nodiscard]] bool stops(const IslandProblem& problem);
   [[nodiscard]] IslandProblem& problem_by_law();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
   void leave_out_repeated(double gap_noise);
@@ -92,7 +94,7 @@ private:
   enum class Closing : std::uint8_t { with_sliding, all, pressed };
   void list_captured(Closing closing, std::span<const Index> pairs, EventInstant& at);
   [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;
-  [[noreturn]] void fail_unsolved(const IslandProblem& problem, const EventInstant& at) const;
+  [[noreturn]] void fail_unsolved(const IslandProblem& problem, const EventInstant& at);
 
   const EventDriven* options_;
   const GroupFailure* failure_;

@@ -142,6 +142,7 @@ void JoinableGroup::part(const ClockGroup& last, State& state, EventBalance& bal
   group_->impacts.start();
   group_->impacts.take(from.impacts);
   group_->modes.start();
+  group_->modes.take(from.modes, from.clock.now);  // an end that follows at once is another one
   group_->detector.start();
   group_->flow.keep_step(from.flow.kept_step());
   group_->motion.active().list().clear();
@@ -154,7 +155,7 @@ void JoinableGroup::part(const ClockGroup& last, State& state, EventBalance& bal
   group_->limits.fail_evaluations();
 }
 
-void JoinableGroup::sample(double time, bool landed, MotionSample& out) try {
+void JoinableGroup::sample(double time, bool landed, Forces forces, MotionSample& out) try {
   group_->memory->motion.limit.restart();
   std::vector<double>& y = group_->memory->detection.y;
   y.assign(group_->y.begin(), group_->y.end());
@@ -167,7 +168,7 @@ void JoinableGroup::sample(double time, bool landed, MotionSample& out) try {
       flow.sample(time, y);
     }
   }
-  group_->motion.sample(time, y.data(), Forces::all, out);
+  group_->motion.sample(time, y.data(), forces, out);
 } catch (const EvaluationLimit::Reached&) {
   group_->limits.fail_evaluations();
 }

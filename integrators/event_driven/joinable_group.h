@@ -46,8 +46,8 @@ public:
   /// Writes the output state, as ClockGroup::advance() does.
   void output(double target, EventBalance& balance);
   /// The motion at a time of the step ahead, or at rest. \param landed as accurate as steps, not by
-  /// interpolation
-  void sample(double time, bool landed, MotionSample& out);
+  /// interpolation \param forces that accelerations follow from
+  void sample(double time, bool landed, Forces forces, MotionSample& out);
 
 private:
   void book_end(EventBalance& balance);

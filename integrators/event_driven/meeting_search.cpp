@@ -45,18 +45,19 @@ private:
 /// Two groups within their steps.
 class GroupsPath final : public PairPath {
 public:
-  GroupsPath(ClockGroup& a, ClockGroup& b, bool landed, MotionSample& out)
-      : a_(&a), b_(&b), landed_(landed), out_(&out) {}
+  GroupsPath(ClockGroup& a, ClockGroup& b, bool landed, Forces forces, MotionSample& out)
+      : a_(&a), b_(&b), landed_(landed), forces_(forces), out_(&out) {}
 
   [[nodiscard]] const MotionSample& sample(double time) override {
-    JoinableGroup(*a_).sample(time, landed_, *out_);
-    JoinableGroup(*b_).sample(time, landed_, *out_);
+    JoinableGroup(*a_).sample(time, landed_, forces_, *out_);
+    JoinableGroup(*b_).sample(time, landed_, forces_, *out_);
     return *out_;
   }
 
 private:
   ClockGroup *a_, *b_;
   bool landed_;
+  Forces forces_;
   MotionSample* out_;
 };
 
@@ -90,7 +91,7 @@ void GroupSamples::take(double time, ClockGroup& group) {
   const auto is_of = [&](const auto& known) { return known.first == &group; };
   const auto found = std::find_if(known_.begin(), known_.end(), is_of);
   if (found != known_.end() && found->second == time) return;
-  JoinableGroup(group).sample(time, false, at_);
+  JoinableGroup(group).sample(time, false, Forces::all, at_);
   if (found != known_.end()) {
     found->second = time;
   } else {
@@ -206,8 +207,9 @@ double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingR
   const double slow = speed_noise_of(rule.fastest, options_->absolute_tolerance);
   const double interpolated = 10.0 * options_->gap_tolerance;  // errors up to this are those of tolerances
   if (from.gap.value + to.gap.value - rule.fastest * (to.time - from.time) > 2.0 * rule.noise) return never;
-  GroupsPath looks(bodies.of_a, bodies.of_b, at_depth.landed, at_),
-      landings(bodies.of_a, bodies.of_b, true, at_);
+  GroupsPath looks(bodies.of_a, bodies.of_b, at_depth.landed, Forces::all, at_);
+  // Values and rates of a gap are asked for, its acceleration is not.
+  GroupsPath landings(bodies.of_a, bodies.of_b, true, Forces::without_contact, at_);
   double time = first_closing(looks, gap, rule, from, to);
   if (!(time < never)) return never;
   ClosingBracket at{from.time, to.time, std::max(std::abs(to.time), to.time - from.time)};
@@ -216,8 +218,9 @@ double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingR
     const StepPolynomial::End landed = gap_in(gap, landings.sample(time));
     if (i == 0 && !at_depth.landed &&
         std::abs(gap_in(gap, looks.sample(time)).value - landed.value) > interpolated) {
-      const GapLook begin{from.time, true, gap_in(gap, landings.sample(from.time))},
-          end{to.time, true, gap_in(gap, landings.sample(to.time))};
+      GroupsPath landed_looks(bodies.of_a, bodies.of_b, true, Forces::all, at_);
+      const GapLook begin{from.time, true, gap_in(gap, landed_looks.sample(from.time))},
+          end{to.time, true, gap_in(gap, landed_looks.sample(to.time))};
       rule.level = std::min(0.0, begin.gap.value);
       return located(bodies, gap, rule, begin, end, {at_depth.halvings, true});
     }

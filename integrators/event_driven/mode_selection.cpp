@@ -87,8 +87,15 @@ void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
 
 void ModeSelection::take(const ModeSelection& other, double time) {
   if (other.ended_at_ != time) return;
-  exhausted_.insert(exhausted_.end(), other.exhausted_.begin(), other.exhausted_.end());
-  releasing_.insert(releasing_.end(), other.releasing_.begin(), other.releasing_.end());
+  // Parts of one group remember the same: no end counts twice.
+  for (const ExhaustedFriction& end : other.exhausted_) {
+    const auto known = std::ranges::find(exhausted_, end.pair, &ExhaustedFriction::pair);
+    if (known == exhausted_.end()) exhausted_.push_back(end);
+  }
+  for (const ContactPair& end : other.releasing_) {
+    if (std::ranges::count(releasing_, end) < std::ranges::count(other.releasing_, end))
+      releasing_.push_back(end);
+  }
   ended_at_ = time;
   if (other.stopped_ != ContactPair{}) stopped_ = other.stopped_;
 }
@@ -154,9 +161,9 @@ Decision ModeSelection::decide_by_limit(Decision decision, EventInstant& at) {
     if (by_forces != Decision::failed) return by_forces;
   }
   if (decision == Decision::impossible) fail_unkept(at);
-  const bool by_joints = std::any_of(
-      memory_->candidates.begin(), memory_->candidates.end(),
-      [&](const Candidate& candidate) { return at.motion.joints().depends_on_joint_force(candidate.at); });
+  const bool by_joints = std::ranges::any_of(memory_->candidates, [&](const Candidate& candidate) {
+    return at.motion.joints().depends_on_joint_force(candidate.at);
+  });
   const std::string why = by_joints ? std::string("; ") + unsettled_friction : std::string{};
   const std::vector<Constraint> unkept = unkept_contacts(memory_->candidates, at);
   failure_->fail("the contact problem of the accelerations is not solved" + why, failure_->names(unkept),
@@ -165,9 +172,8 @@ Decision ModeSelection::decide_by_limit(Decision decision, EventInstant& at) {
 
 /// True if a contact slides.
 bool ModeSelection::any_slides() const {
-  return std::any_of(memory_->candidates.begin(), memory_->candidates.end(), [](const Candidate& candidate) {
-    return candidate.slip != 0.0 && !candidate.at.has_dry_friction();
-  });
+  const auto slides = [](const Candidate& at) { return at.slip != 0.0 && !at.at.has_dry_friction(); };
+  return std::ranges::any_of(memory_->candidates, slides);
 }
 
 void ModeSelection::collect_candidates(std::span<const Index> pairs, const EventInstant& at) {
@@ -193,9 +199,8 @@ void ModeSelection::collect_candidates(std::span<const Index> pairs, const Event
     const bool rests = candidate.pair == stopped_ || (!rolling && at.is_stopped(i, slip));
     candidate.slip = std::abs(slip) > noise && !rests ? slip : 0.0;
     candidate.frictionless = !rolling && contact.law.sticking_friction() == 0.0;
-    const auto same = [&](const auto& other) { return other.pair == candidate.pair; };
     if (at.before_at[i] != none) candidate.present = at.before[at.before_at[i]].mode;
-    const auto exhausted = std::find_if(exhausted_.begin(), exhausted_.end(), same);
+    const auto exhausted = std::ranges::find(exhausted_, candidate.pair, &ExhaustedFriction::pair);
     if (exhausted != exhausted_.end()) {
       candidate.starts_slipping = true;
       candidate.exhausted_friction = exhausted->force;
@@ -220,9 +225,8 @@ void ModeSelection::take_coming_feature(const EventInstant& at, Candidate& candi
 }
 
 bool ModeSelection::has_unbounded_force() const {
-  const std::vector<Candidate>& candidates = memory_->candidates;
-  return std::any_of(candidates.begin(), candidates.end(),
-                     [&](const Candidate& candidate) { return unbounded_->contains(candidate.pair); });
+  const auto contains = [&](const Candidate& candidate) { return unbounded_->contains(candidate.pair); };
+  return std::ranges::any_of(memory_->candidates, contains);
 }
 
 Decision ModeSelection::decide(EventInstant& at) {

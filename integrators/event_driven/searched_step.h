@@ -44,6 +44,13 @@ struct SearchedStep {
     motion.sample(time, memory.y.data(), Forces::all, memory.within);
     return memory.within;
   }
+  /// Likewise for gaps, which do not ask for the forces of contact themselves.
+  const MotionSample& sample_for_gaps(double time) {
+    memory.y.resize(motion.size());
+    flow.sample(time, memory.y);
+    memory.accelerations.sample(motion, time, memory.y.data(), memory.within);
+    return memory.within;
+  }
 };
 
 /// A state on which a step of the flow ends.

@@ -71,4 +71,16 @@ TEST(EventDominoesLong, OfAllFrictionAndRestitution) {
   }
 }
 
+// The heap behind the wave could not be stopped but with what pushes it, and came to rest contact by contact
+// after each impact: 263,255 events for friction 0.8 and restitution 0.1, in place of 12,158.
+TEST(EventDominoesLong, Twenty) {
+  for (const double friction : {0.2, 0.4, 0.8}) {
+    for (const double restitution : {0.0, 0.1}) run({20, friction, restitution}, 3.0);
+  }
+}
+
+// Groups that parted forgot at an instant which forces had come to their end there: events followed each
+// other at 1.8 s without end.
+TEST(EventDominoesLong, Thirty) { run({30, 0.2, 0.0}, 3.0); }
+
 }  // namespace
