@@ -297,7 +297,7 @@ void Simulation::load(const std::string& path) { restore_from(read_file(path, "c
 
 std::string Simulation::checkpoint() const {
   impl_->guard.demand("checkpoint", CallGuard::Need::no_step);
-  const std::string made = write_checkpoint(system().fingerprint(), impl_->state, impl_->companion);
+  std::string made = write_checkpoint(system().fingerprint(), impl_->state, impl_->companion);
   if (impl_->model->machines.driver) impl_->model->machines.driver->forget();
   return made;
 }
