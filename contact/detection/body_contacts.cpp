@@ -45,11 +45,6 @@ bool has_law_between_bodies(const System& system) {
   return false;
 }
 
-/// An outline where its body is.
-ConvexOutline view(const BodyOutline& outline, std::span<const Vec<2>> placed) {
-  return {placed.subspan(outline.vertices.begin, outline.vertices.size()), outline.radius};
-}
-
 /// Outlines of the contacts of the step before. Mostly those contacts are the same as in the step before
 /// that.
 void look_up_lasting(const BodyOutlines& outlines, std::span<const ConstraintKey> keys,
@@ -79,13 +74,6 @@ void place(const BodyOutlines& outlines, const BodySlots& bodies, const ContactQ
     const double* const centre = query.state.q + slot.q;
     memory.sides[i] = {list[i].body, slot.v, static_cast<int>(slot.v_size), {centre[0], centre[1]}};
   }
-}
-
-/// Velocity of a point of a body. \param velocities of all bodies
-Vec<2> velocity_at(const RowSide& side, const double* velocities, const Vec<2>& point) {
-  Vec<2> out(velocities[side.v], velocities[side.v + 1]);
-  if (side.columns > 2) out += Space<2>::lever_velocity(velocities + side.v + 2, Vec<2>(point - side.centre));
-  return out;
 }
 
 /// Writes which contact it is, and its law.
@@ -151,7 +139,7 @@ void BodyContacts::collect_pairs(const ContactQuery& query, BodyContactSearch& m
   pairs.clear();
   memory.boxes.clear();
   for (const BodyOutline& outline : list) {
-    memory.boxes.push_back(box_around(view(outline, memory.placed).vertices, outline.radius));
+    memory.boxes.push_back(box_around(placed_outline(outline, memory).vertices, outline.radius));
   }
   if (memory.broad.size() != list.size()) {
     std::vector<Index> owners;
@@ -204,7 +192,7 @@ void BodyContacts::find(const ContactQuery& query, BodyContactSearch& memory,
 void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const {
   const BodyOutline &a = outlines_.list()[i], &b = outlines_.list()[j];
   const double margin = query.lasting == nullptr ? query.margin : any_gap;
-  const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
+  const ConvexOutline of_a = placed_outline(a, memory), of_b = placed_outline(b, memory);
   const auto add_if_any = [&](const BodyTouch& touch) {
     const std::size_t before = memory.touching.size();
     if (touch.gap.gap <= query.margin) memory.touching.push_back(touch);
@@ -221,32 +209,24 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
   if (count == 0) return;
   BodyTouch first{i, j, found[0], 0.0};
   std::optional<GapPoint> second;
-  if (of_a.radius + of_b.radius == 0.0 && is_near_corner(first.gap, lengths_.corner))
-    second = second_contact(first.gap, corners_at(first, query, memory));
+  bool is_alone = count < 2;
+  if (of_a.radius + of_b.radius == 0.0 && is_near_corner(first.gap, lengths_.corner)) {
+    const CornerMeeting meeting = meeting_near(first, query, memory);
+    if (!leave_hidden_side(first.gap, meeting)) return;
+    is_alone = is_alone || first.gap.normal != found[0].normal;  // the other one is of the hidden side
+    second = second_contact(first.gap, meeting);
+  }
   const bool is_first = add_if_any(first), is_second = second && add_if_any({i, j, *second, 0.0});
   // Where one of two corners that meet touches, so does the other one.
   if (second && is_first != is_second && std::abs(first.gap.gap - second->gap) <= lengths_.corner)
     memory.touching.push_back({i, j, is_first ? *second : first.gap, 0.0});
   // One of the same name as the second is of the same corner.
-  if (count < 2 || (second && key_of(a, b, *second) == key_of(a, b, found[1]))) return;
+  if (is_alone || (second && key_of(a, b, *second) == key_of(a, b, found[1]))) return;
   const BodyTouch far{i, j, found[1], 0.0};
   if (!add_if_any(far) || !second || !is_near_corner(far.gap, lengths_.corner)) return;
-  if (const auto other = along_other_face(far.gap, corners_at(far, query, memory)))
-    add_if_any({i, j, *other, 0.0});
-}
-
-/// The corners of two sharp outlines that are nearest to a contact.
-CornerMeeting BodyContacts::corners_at(const BodyTouch& touch, const ContactQuery& query,
-                                       const BodyContactSearch& memory) const {
-  const BodyOutline &a = outlines_.list()[touch.a], &b = outlines_.list()[touch.b];
-  const ConvexOutline of_a = view(a, memory.placed), of_b = view(b, memory.placed);
-  const auto [i, j] = nearest_corners(of_a, of_b, touch.gap);
-  CornerMeeting meeting{SharpCorner::of(of_a, i), SharpCorner::of(of_b, j), lengths_.corner};
-  meeting.lasts = query.lasting != nullptr && query.lasting->contains({a.vertex(i), b.surface()}) &&
-                  query.lasting->contains({a.surface(), b.vertex(j)});
-  meeting.velocity = velocity_at(memory.sides[touch.a], query.state.v, meeting.a.at) -
-                     velocity_at(memory.sides[touch.b], query.state.v, meeting.b.at);
-  return meeting;
+  const CornerMeeting meeting = meeting_near(far, query, memory);
+  if (meeting.a.hidden != HiddenSide::neither || meeting.b.hidden != HiddenSide::neither) return;
+  if (const auto other = along_other_face(far.gap, meeting)) add_if_any({i, j, *other, 0.0});
 }
 
 /// Adds a contact of the step before that is a little open, where turning explains that.
@@ -332,19 +312,6 @@ void BodyContacts::follow(const ContactPair& pair, Index feature, const StateVie
   } else {
     fill_pair_rows(side_b, side_a, gap.swapped(), contact);
   }
-}
-
-OutlinePair BodyContacts::outline_pair(const ContactPair& pair, const StateView& state,
-                                       const Evaluation& evaluation) const {
-  const BodySlots& bodies = assembly_->layout()->bodies();
-  OutlinePair out;
-  out.vertex_frame = {bodies[pair.body], state, evaluation};
-  out.outline_frame = {bodies[pair.other], state, evaluation};
-  out.vertex = outlines_.vertices()[pair.feature];
-  out.around = outlines_.described(outlines_.list()[outlines_.outline_of(pair.feature)]);
-  out.outline = outlines_.described(outlines_.list()[pair.outline]);
-  out.lengths = lengths_;
-  return out;
 }
 
 }  // namespace carom

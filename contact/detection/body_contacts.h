@@ -9,6 +9,7 @@
 #include <carom/contact/detection/broad_phase.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_convex.h>
 #include <carom/contact/detection/law_facts.h>
@@ -20,6 +21,7 @@
 #include <carom/core/export.h>
 #include <carom/core/surface.h>
 
+#include <array>
 #include <optional>
 #include <span>
 #include <utility>
@@ -47,7 +49,14 @@ struct BodyContactSearch {
   std::vector<ConstraintKey> lasting;                     ///< contacts of the step before, and
   std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< outlines of those that are of bodies
   Constraint trial;                                       ///< of one that turning may have opened
+  std::vector<Index> near;                                ///< outlines near a corner
 };
+
+/// An outline where its body is.
+[[nodiscard]] inline ConvexOutline placed_outline(const BodyOutline& outline,
+                                                  const BodyContactSearch& memory) {
+  return {std::span(memory.placed).subspan(outline.vertices.begin, outline.vertices.size()), outline.radius};
+}
 
 /// Outlines of the bodies of an assembly, which of them may touch, and by which law.
 class CAROM_API BodyContacts {
@@ -106,8 +115,12 @@ private:
   void collect_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add_lasting_pairs(const ContactQuery& query, BodyContactSearch& memory) const;
   void add(Index i, Index j, const ContactQuery& query, BodyContactSearch& memory) const;
-  [[nodiscard]] CornerMeeting corners_at(const BodyTouch& touch, const ContactQuery& query,
-                                         const BodyContactSearch& memory) const;
+  [[nodiscard]] CornerMeeting meeting_near(const BodyTouch& touch, const ContactQuery& query,
+                                           BodyContactSearch& memory) const;
+  [[nodiscard]] HiddenSide hidden_side(const SharpCorner& corner, Index of, Index from,
+                                       BodyContactSearch& memory) const;
+  void find_hidden_sides(OutlinePair& at, const MeetingCorners& corners, const std::array<Index, 2>& of,
+                         const StateView& state, const Evaluation& evaluation) const;
   void add_lasting(BodyTouch touch, const ContactQuery& query, BodyContactSearch& memory) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, const BodyOutline& b, const GapPoint& gap,
             const StateView& state, Constraint& out) const;

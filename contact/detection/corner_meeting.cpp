@@ -46,6 +46,7 @@ std::array<Vec<2>, 2> edge_of(const SharpCorner& corner, bool is_behind) {
 }  // namespace
 
 std::optional<CommonCone> common_cone(const SharpCorner& a, const SharpCorner& b) {
+  if (a.hidden != HiddenSide::neither || b.hidden != HiddenSide::neither) return {};
   const CornerNormals of_a(a), of_b(b);
   if ((!a.is_point && !of_a.exist) || (!b.is_point && !of_b.exist) || (a.is_point && b.is_point)) return {};
   const ConeEnd a_lower{-of_a.before, true, false}, a_upper{-of_a.behind, true, true};
@@ -104,7 +105,31 @@ bool do_meet(const GapPoint& first, const GapPoint& second, const CornerMeeting&
   return closes && std::abs(turn_between(meeting.a.at - meeting.b.at, v)) <= meeting.same_place * speed;
 }
 
+/// The edge that goes on in a neighbour, at a corner that has a hidden side.
+ConeEnd open_end(const SharpCorner& corner, bool is_of_a) {
+  const bool is_behind = corner.hidden == HiddenSide::before;
+  const CornerNormals normals(corner);
+  const Vec<2>& outwards = is_behind ? normals.behind : normals.before;
+  return {is_of_a ? Vec<2>(-outwards) : outwards, is_of_a, is_behind};
+}
+
 }  // namespace
+
+bool leave_hidden_side(GapPoint& contact, const CornerMeeting& meeting) {
+  const SharpCorner &a = meeting.a, &b = meeting.b;
+  const bool is_of_a = b.hidden == HiddenSide::neither;
+  if ((is_of_a && a.hidden == HiddenSide::neither) || contact.gap > meeting.same_place) return true;
+  if (a.hidden == HiddenSide::both || b.hidden == HiddenSide::both) return false;
+  const auto is_along = [](const Vec<2>& one, const Vec<2>& other) {
+    return std::abs(turn_between(one, other)) <= one_direction && one.dot(other) > 0.0;
+  };
+  const ConeEnd open = open_end(is_of_a ? a : b, is_of_a);
+  if (!is_of_a && a.hidden != HiddenSide::neither && !is_along(open_end(a, true).normal, open.normal))
+    return false;
+  if (is_along(contact.normal, open.normal)) return true;
+  contact = gap_along(open, a, b);
+  return contact.within >= -meeting.same_place;
+}
 
 std::optional<GapPoint> second_contact(GapPoint& first, const CornerMeeting& meeting) {
   const SharpCorner &a = meeting.a, &b = meeting.b;

@@ -17,21 +17,34 @@
 #include <carom/core/space.h>
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
 namespace carom {
 
+/// The side of a corner that a neighbour covers: the edge that ends there, or that begins there. It is no
+/// face to be met: the other edge goes on in a face of the neighbour (covered_side.h). Both where two
+/// neighbours cover one each: the corner meets nothing.
+enum class HiddenSide : std::uint8_t { neither, before, behind, both };
+
+/// What two neighbours hide together, whichever comes first.
+[[nodiscard]] inline HiddenSide hidden_by_both(HiddenSide one, HiddenSide other) {
+  if (one == HiddenSide::neither || one == other) return other;
+  return other == HiddenSide::neither ? one : HiddenSide::both;
+}
+
 /// A vertex of a sharp outline with its neighbours, counter-clockwise around the outline, and the numbers of
 /// these features in the outline.
 struct SharpCorner {
-  Vec<2> before = Vec<2>::Zero();  ///< the vertex before it [m]
-  Vec<2> at = Vec<2>::Zero();      ///< [m]
-  Vec<2> behind = Vec<2>::Zero();  ///< the vertex behind it [m]
-  bool is_point = false;           ///< the outline has no edges: all directions are normals
-  Index vertex = none;             ///< number of the vertex
-  Index edge_before = none;        ///< of the edge that ends there
-  Index edge_behind = none;        ///< of the edge that begins there
+  Vec<2> before = Vec<2>::Zero();           ///< the vertex before it [m]
+  Vec<2> at = Vec<2>::Zero();               ///< [m]
+  Vec<2> behind = Vec<2>::Zero();           ///< the vertex behind it [m]
+  bool is_point = false;                    ///< the outline has no edges: all directions are normals
+  Index vertex = none;                      ///< number of the vertex
+  Index edge_before = none;                 ///< of the edge that ends there
+  Index edge_behind = none;                 ///< of the edge that begins there
+  HiddenSide hidden = HiddenSide::neither;  ///< the side that a neighbour covers
 
   /// A corner of an outline.
   [[nodiscard]] static SharpCorner of(const ConvexOutline& outline, Index vertex) {
@@ -79,7 +92,8 @@ struct CommonCone {
 
 /// What the normal cones of two corners have in common. Nothing where that is no more than one direction, as
 /// of edges that lie on each other, or all but a half circle, as of a point and the end of a segment: its two
-/// sides push across it only.
+/// sides push across it only. Nothing either where a neighbour covers a side of one: such a corner has the
+/// normal of its other edge.
 [[nodiscard]] CAROM_API std::optional<CommonCone> common_cone(const SharpCorner& a, const SharpCorner& b);
 
 /// The gap of two corners along one end of their common cone, of the corner of one outline and an edge of the
@@ -117,6 +131,13 @@ struct CornerMeeting {
   constexpr double far = 64.0;
   return contact.within <= same_place + far * std::abs(contact.gap);
 }
+
+/// Sees to it that a contact of two corners is not one with a side that a neighbour covers: there it becomes
+/// one along the normal of the edge that goes on in the neighbour. \returns false where they do not touch:
+/// the other corner does not stand before that edge yet; or both have a hidden side, and the other edges look
+/// not against each other, as of three corners in one place, of which the third one's outline bears both.
+/// \param contact of the two, or of one and an edge
+[[nodiscard]] CAROM_API bool leave_hidden_side(GapPoint& contact, const CornerMeeting& meeting);
 
 /// The second contact of two sharp corners that meet: along the other end of their common cone. Nothing where
 /// one corner just stands before an edge of the other outline. Where both contacts are of edges of one

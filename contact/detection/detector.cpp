@@ -107,9 +107,8 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
   }
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
   if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
-  const GroundMotion* const motion = ground_.shapes().motion(pair.ground_shape, places);
-  if (pair.is_of_pieces()) return pieces_.contact(pair, state, evaluation, motion, out);
-  ground_.contact(pair, state, evaluation, motion, out);
+  if (pair.is_of_pieces()) return pieces_.contact(pair, state, evaluation, places, out);
+  ground_.contact(pair, state, evaluation, ground_.shapes().motion(pair.ground_shape, places), out);
 }
 
 std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }
@@ -122,13 +121,13 @@ std::optional<ContactPair> pair_of(const Detector& detector, const ConstraintKey
 void follow(const Detector& detector, const ContactPair& pair, Index feature, const StateView& state,
             const Evaluation& evaluation, const GroundPlaces& places, Constraint& contact) {
   if (!pair.is_of_pieces()) return detector.bodies().follow(pair, feature, state, evaluation, contact);
-  detector.pieces().follow(pair, feature, state, evaluation, motion_of(detector, pair, places), contact);
+  detector.pieces().follow(pair, feature, state, evaluation, places, contact);
 }
 
 OutlinePair outline_pair(const Detector& detector, const ContactPair& pair, const StateView& state,
                          const Evaluation& evaluation, const GroundPlaces& places) {
   if (!pair.is_of_pieces()) return detector.bodies().outline_pair(pair, state, evaluation);
-  return detector.pieces().outline_pair(pair, state, evaluation, motion_of(detector, pair, places));
+  return detector.pieces().outline_pair(pair, state, evaluation, places);
 }
 
 }  // namespace carom

@@ -24,6 +24,11 @@ bool slides_off(const Vec<2>& rate, const Vec<2>& from, const Vec<2>& along, con
   return std::abs(along.dot(rate)) <= slow && from.dot(rate) > std::max(slow, in_a_second);
 }
 
+/// The corner of an outline that stands before an edge of the vertex's own outline. \param feature of that
+Index corner_before_edge(const ConvexOutline& outline, Index feature) {
+  return (feature - 2 * outline.size()) / 2;
+}
+
 }  // namespace
 
 FeatureRegions::FeatureRegions(const OutlinePair& pair)
@@ -31,6 +36,9 @@ FeatureRegions::FeatureRegions(const OutlinePair& pair)
       chain_(pair.chain),
       of_vertex_(pair.around),
       vertex_(pair.vertex),
+      corner_(pair.corner),
+      hidden_(pair.hidden),
+      hidden_of_vertex_(pair.hidden_of_vertex),
       sharp_(pair.is_sharp()),
       lengths_(pair.lengths) {
   const PlaneFrame &of_vertex = pair.vertex_frame, &frame = pair.outline_frame;
@@ -58,6 +66,8 @@ Index FeatureRegions::nearest() const {
     distance = found[0].gap;
   }
   if (!sharp_ || !has_several()) return feature;
+  if (hidden_ != HiddenSide::neither || hidden_of_vertex_ != HiddenSide::neither)
+    return beside_neighbour(feature);
   if (distance < -lengths_.corner_follows()) return behind_corner(feature, -distance);
   if (std::abs(distance) > lengths_.corner_follows()) return face_of_segment(feature);
   // In the place of a corner rounding decides which feature is nearest.
@@ -162,9 +172,34 @@ ConeEnd FeatureRegions::own_edge(Index feature) const {
   return end;
 }
 
+/// The feature at a corner where a neighbour covers a side of it, or of the vertex: the edge that goes on in
+/// the neighbour, or one that lies on that; the corner where what touches stands before none.
+/// \param found the nearest feature
+Index FeatureRegions::beside_neighbour(Index found) const {
+  const Index n = outline_.size(), behind = n + corner_, before = n + outline_.before(corner_);
+  const Index hidden = hidden_ == HiddenSide::before ? before : behind;
+  if (found != corner_ && found != behind && found != before) return found;
+  const bool is_closed = hidden_ == HiddenSide::both || hidden_of_vertex_ == HiddenSide::both;
+  if (n == 1 || is_closed) return corner_;
+  constexpr double in_line = 1e-6;  // directions that say the same, as where corners meet [rad]
+  const SharpCorner own = corner_of_vertex();
+  const bool ends_there = hidden_of_vertex_ == HiddenSide::behind;
+  const std::array<Vec<2>, 2> ends{ends_there ? own.before : own.at, ends_there ? own.at : own.behind};
+  const Vec<2> along = OutlineEdge({ends, 0.0}, 0).along;
+  for (const Index edge : {behind, before}) {
+    if (hidden_ != HiddenSide::neither && edge == hidden) continue;
+    const OutlineEdge face(outline_, edge - n);
+    const bool lies_on_it = face.along.dot(along) < 0.0 && std::abs(face.normal().dot(along)) <= in_line;
+    if (hidden_of_vertex_ != HiddenSide::neither && !lies_on_it) continue;
+    return margin(edge).value >= -lengths_.corner_follows() ? edge : corner_;
+  }
+  return corner_;
+}
+
 GapPoint FeatureRegions::gap(const ConvexOutline& point, Index feature) const {
   if (!is_of_vertex(feature)) return tracked_gap(point, 0, outline_, feature);
-  return gap_along(own_edge(feature), corner_of_vertex(), SharpCorner::of(outline_, corner_of(feature)));
+  return gap_along(own_edge(feature), corner_of_vertex(),
+                   SharpCorner::of(outline_, corner_before_edge(outline_, feature)));
 }
 
 /// The edge that the vertex touches at a corner, or the corner where it touches none: it stands beyond the
@@ -248,7 +283,8 @@ bool FeatureRegions::may_touch() const {
   if (!sharp_ || !has_several()) return true;
   const Index feature = nearest();
   if (!outline_.is_edge(feature)) return false;
-  return !chain_ || margin(feature).value >= -lengths_.corner;
+  const bool goes_on = chain_ || hidden_ != HiddenSide::neither || hidden_of_vertex_ != HiddenSide::neither;
+  return !goes_on || margin(feature).value >= -lengths_.corner;
 }
 
 double FeatureRegions::clearance(Index feature) const {
@@ -264,7 +300,7 @@ FeatureMargin FeatureRegions::margin(Index feature) const {
     const std::array<Vec<2>, 2> ends{is_behind ? own.at : own.before, is_behind ? own.behind : own.at};
     const OutlineEdge edge({ends, 0.0}, 0);
     const Vec<2> inwards = is_behind ? edge.along : Vec<2>(-edge.along);
-    const Index corner = corner_of(feature);
+    const Index corner = corner_before_edge(outline_, feature);
     return {inwards.dot(outline_.vertices[corner] - own.at), -inwards.dot(rate_), corner};
   }
   if (outline_.is_edge(feature)) {

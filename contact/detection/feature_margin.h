@@ -11,7 +11,8 @@
 /// stands at the end of an edge to rounding, or has left it by a little, stands before that edge; else its
 /// normal would be that between two places that are the same. Where two corners meet in one place, the pair
 /// of either corner has the normal of one end of their common cone (corner_meeting.h), of an edge of its own
-/// outline or, where both ends are edges of the other one, of an edge of that.
+/// outline or, where both ends are edges of the other one, of an edge of that. A corner of which a neighbour
+/// covers a side has the normal of its other edge only.
 
 #include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/feature_region.h>
@@ -71,8 +72,8 @@ private:
   [[nodiscard]] std::optional<Meeting> meeting_at(Index corner) const;
   [[nodiscard]] std::optional<Index> edge_of_one(Index corner, const Meeting& at) const;
   [[nodiscard]] Index behind_corner(Index found, double depth) const;
+  [[nodiscard]] Index beside_neighbour(Index found) const;
   [[nodiscard]] bool is_of_vertex(Index feature) const { return feature >= 2 * outline_.size(); }
-  [[nodiscard]] Index corner_of(Index feature) const { return (feature - 2 * outline_.size()) / 2; }
   [[nodiscard]] ConeEnd own_edge(Index feature) const;
   [[nodiscard]] Vec<2> in_frame_of_vertex(const Vec<2>& point) const;
   [[nodiscard]] Vec<2> in_frame_of_outline(const Vec<2>& point) const;
@@ -86,6 +87,8 @@ private:
   Vec<2> vertex_ = Vec<2>::Zero();    // as the vertex; that body
   Vec<2> shift_;                      // stands here in the frame of the first,
   double cosine_ = 1.0, sine_ = 0.0;  // turned by this
+  Index corner_ = none;               // as of OutlinePair
+  HiddenSide hidden_ = HiddenSide::neither, hidden_of_vertex_ = HiddenSide::neither;
   bool sharp_ = false;
   FeatureLengths lengths_;
 };

@@ -4,6 +4,7 @@
 /// A vertex of one side and an outline of the other, each in its own frame.
 
 #include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/face_chain.h>
 #include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_point.h>
@@ -79,6 +80,9 @@ struct OutlinePair {
   std::optional<FaceChain> chain;  ///< given if the outline is a chain on ground
   FeatureLengths lengths{};        ///< to which features are told apart
   bool is_hollow = false;          ///< the outline is a circle that the vertex is inside of
+  Index corner = none;  ///< vertex of the outline that may meet the vertex of the pair; `none`: none is near
+  HiddenSide hidden = HiddenSide::neither;            ///< the side of that corner that a neighbour covers
+  HiddenSide hidden_of_vertex = HiddenSide::neither;  ///< likewise of the vertex
 
   /// The vertex, in the frame of the outline [m].
   [[nodiscard]] Vec<2> vertex_at_outline() const {
@@ -87,5 +91,15 @@ struct OutlinePair {
   /// True if neither side is rounded.
   [[nodiscard]] bool is_sharp() const { return !is_hollow && outline.radius + around.radius == 0.0; }
 };
+
+/// Two corners that are near each other, in space.
+struct MeetingCorners {
+  SharpCorner of_vertex, of_outline;
+};
+
+/// The corners of a pair that may meet: its vertex, and that of the outline which is so near that what sinks
+/// there may be behind either of its edges (OutlinePair::corner is set to it). Nothing of rounded outlines
+/// and of chains, and where none is near.
+[[nodiscard]] CAROM_API std::optional<MeetingCorners> corners_that_meet(OutlinePair& pair);
 
 }  // namespace carom

@@ -37,6 +37,7 @@ PieceContacts::PieceContacts(const Assembly& assembly, const FeatureLengths& len
   }
   find_laws();
   fill_families();
+  covering_ = CoveringGround(shapes_, pieces_);
 }
 
 void PieceContacts::find_laws() {
@@ -144,7 +145,14 @@ void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Co
   std::array<GapPoint, 2> found;
   const int count = pieces_.find(piece, search.placed, search.margin, found);
   if (count == 0) return;
-  const std::optional<GapPoint> second = second_at_corner(search, on_ground, found[0]);
+  std::optional<GapPoint> second;
+  bool is_alone = count < 2;
+  if (const auto meeting = meeting_near(search, on_ground, found[0])) {
+    const Vec<2> normal = found[0].normal;
+    if (!leave_hidden_side(found[0], *meeting)) return;
+    is_alone = is_alone || found[0].normal != normal;  // the other one is of the hidden side
+    second = second_contact(found[0], *meeting);
+  }
   const double most = search.query.margin, any = std::numeric_limits<double>::infinity();
   const bool is_first = add(search, on_ground, found[0], most, out),
              is_second = second && add(search, on_ground, *second, most, out);
@@ -152,14 +160,14 @@ void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Co
   if (second && is_first != is_second && std::abs(found[0].gap - second->gap) <= pieces_.lengths().corner)
     add(search, on_ground, is_first ? *second : found[0], any, out);
   // One of the same name as the second is of the same corner.
-  if (count > 1 && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
+  if (!is_alone && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
     add(search, on_ground, found[1], most, out);
 }
 
-/// The other contact where a sharp corner of a body meets one of the ground. \param first changes if the
-/// other one comes first
-std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, Index on_ground,
-                                                        GapPoint& first) const {
+/// The corners nearest to where a sharp outline of a body touches one of the ground; nothing where no two are
+/// near.
+std::optional<CornerMeeting> PieceContacts::meeting_near(const Search& search, Index on_ground,
+                                                         const GapPoint& first) const {
   const GroundOutline& b = pieces_.outlines()[on_ground];
   const ConvexOutline &of_a = search.placed, of_b = pieces_.view(on_ground);
   const double same_place = pieces_.lengths().corner;
@@ -175,7 +183,10 @@ std::optional<GapPoint> PieceContacts::second_at_corner(const Search& search, In
   const Vec<2> at_a = frame.outside(meeting.a.at), at_b = frame.outside(meeting.b.at);
   meeting.velocity = frame.turned_back(
       Vec<2>(body.velocity_at(Vec<2>(at_a - body.centre)) - frame.velocity_at(Vec<2>(at_b - frame.centre))));
-  return second_contact(first, meeting);
+  SharpCorner in_space = meeting.b;
+  for (Vec<2>* point : {&in_space.before, &in_space.at, &in_space.behind}) *point = frame.outside(*point);
+  meeting.b.hidden = covering_.side(in_space, b.shape, a.filter, search.query.places, shapes_, pieces_);
+  return meeting;
 }
 
 /// Appends a contact that is closed, or was and may still be. \param local its gap, in the frame of the
@@ -212,30 +223,6 @@ void PieceContacts::fill(const ConstraintKey& key, const BodyOutline& a, Index o
   out.friction = out.law.friction;
   pieces_.fill_rows(on_ground, PairSide::of_body(body, a.body, a.radius, state), gap, motion, end, out);
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
-}
-
-OutlinePair PieceContacts::outline_pair(const ContactPair& pair, const StateView& state,
-                                        const Evaluation& evaluation, const GroundMotion* motion) const {
-  const PlaneFrame of_body(assembly_->layout()->bodies()[pair.body], state, evaluation), of_ground(motion);
-  OutlinePair out;
-  out.lengths = pieces_.lengths();
-  if (pair.ground_outline != none) {
-    out.vertex_frame = of_body;
-    out.outline_frame = of_ground;
-    out.vertex = outlines_.vertices()[pair.feature];
-    out.around = outlines_.described(outlines_.list()[outlines_.outline_of(pair.feature)]);
-    out.outline = pieces_.view(pair.ground_outline);
-    out.is_hollow = pieces_.outlines()[pair.ground_outline].is_hollow();
-    if (pieces_.outlines()[pair.ground_outline].is_chain()) out.chain = pieces_.chain(pair.ground_outline);
-  } else {
-    const GroundOutline& on_ground = pieces_.outlines()[pieces_.outline_of(pair.ground_vertex)];
-    out.vertex_frame = of_ground;
-    out.outline_frame = of_body;
-    out.vertex = pieces_.vertices()[pair.ground_vertex];
-    out.around = {pieces_.around(pair.ground_vertex), on_ground.radius};
-    out.outline = outlines_.described(outlines_.list()[pair.outline]);
-  }
-  return out;
 }
 
 /// The gap of a pair at one feature of its outline, or at the nearest one (`none`); a of it is the body.
@@ -297,52 +284,24 @@ const Surface& PieceContacts::law(const ContactPair& pair) const {
 }
 
 void PieceContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                            const GroundMotion* motion, Constraint& out) const {
+                            const GroundPlaces& places, Constraint& out) const {
   const auto [a, on_ground] = sides_of(pair);
   const GroundOutline& b = pieces_.outlines()[on_ground];
-  const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, motion), none);
+  const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, places), none);
   const ConstraintKey key = pair.ground_outline != none ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
                                                         : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
   out = {};  // it may have held a contact of another body
-  fill(key, a, on_ground, gap, state, motion, {}, out);
+  fill(key, a, on_ground, gap, state, shapes_.motion(pair.ground_shape, places), {}, out);
 }
 
 void PieceContacts::follow(const ContactPair& pair, Index feature, const StateView& state,
-                           const Evaluation& evaluation, const GroundMotion* motion,
+                           const Evaluation& evaluation, const GroundPlaces& places,
                            Constraint& contact) const {
   const auto [a, on_ground] = sides_of(pair);
-  const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, motion), feature);
+  const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, places), feature);
   const BodySlot& body = assembly_->layout()->bodies()[pair.body];
-  pieces_.fill_rows(on_ground, PairSide::of_body(body, pair.body, a.radius, state), gap, motion, {}, contact);
-}
-
-/// Each vertex of a body against each outline on ground; and, where the body has edges or is a point, each
-/// corner of the ground against each outline of the body. Of two round ends one is enough.
-void PieceContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {
-  const Range bodies = assembly_->bodies_of({component, component + 1});
-  for (Index i = begin_[bodies.begin]; i < begin_[bodies.end]; ++i) {
-    const BodyOutline& a = outlines_.list()[i];
-    for (Index on_ground = 0; on_ground < pieces_.outlines().size(); ++on_ground) {
-      const GroundOutline& b = pieces_.outlines()[on_ground];
-      if (!may_touch(a, b)) continue;
-      const ContactPair pair{.body = a.body, .ground_shape = b.shape};
-      const bool is_peg = b.form == GroundPiece::Form::solid && b.vertices.size() == 1;
-      for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
-        if (is_peg && a.vertices.size() > 1) break;
-        out.push_back(pair);
-        out.back().feature = vertex;
-        out.back().ground_outline = on_ground;
-      }
-      const bool point_at_corners = a.is_point() && b.radius == 0.0 && !is_peg;
-      if ((a.vertices.size() == 1 && !point_at_corners) || b.is_hollow()) continue;
-      for (Index vertex = b.vertices.begin; vertex < b.vertices.end; ++vertex) {
-        if (!pieces_.is_corner(vertex)) continue;
-        out.push_back(pair);
-        out.back().outline = i;
-        out.back().ground_vertex = vertex;
-      }
-    }
-  }
+  pieces_.fill_rows(on_ground, PairSide::of_body(body, pair.body, a.radius, state), gap,
+                    shapes_.motion(pair.ground_shape, places), {}, contact);
 }
 
 }  // namespace carom

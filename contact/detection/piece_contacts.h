@@ -8,6 +8,8 @@
 #include <carom/contact/detection/box_grid.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/corner_meeting.h>
+#include <carom/contact/detection/covering_ground.h>
 #include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_point.h>
 #include <carom/contact/detection/ground_pieces.h>
@@ -51,16 +53,16 @@ public:
 
   /// Law of a pair.
   [[nodiscard]] const Surface& law(const ContactPair& pair) const;
-  /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
+  /// Writes the contact of a pair, whatever its gap. \param places of all shapes
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-               const GroundMotion* motion, Constraint& out) const;
+               const GroundPlaces& places, Constraint& out) const;
   /// Brings rows, gap and drift of the contact of a pair to a state, as long as its vertex stays with one
   /// feature of the outline (ConvexOutline), whichever is the nearest; key and law stay.
   void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
-              const GroundMotion* motion, Constraint& contact) const;
+              const GroundPlaces& places, Constraint& contact) const;
   /// The vertex and the outline of a pair.
   [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
-                                         const Evaluation& evaluation, const GroundMotion* motion) const;
+                                         const Evaluation& evaluation, const GroundPlaces& places) const;
 
 private:
   /// Pieces at rest, or those of one shape that moves, in its frame.
@@ -88,8 +90,8 @@ private:
   void find_in(const Family& family, const BodyOutline& outline, const ContactQuery& query,
                std::vector<Constraint>& out) const;
   void find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const;
-  [[nodiscard]] std::optional<GapPoint> second_at_corner(const Search& search, Index ground,
-                                                         GapPoint& first) const;
+  [[nodiscard]] std::optional<CornerMeeting> meeting_near(const Search& search, Index ground,
+                                                          const GapPoint& contact) const;
   bool add(const Search& search, Index ground, const GapPoint& local, double most,
            std::vector<Constraint>& out) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, Index ground, const GapPoint& gap,
@@ -104,6 +106,7 @@ private:
   std::vector<Index> begin_;   // of each body: its first outline
   std::vector<Surface> laws_;  // row-major: material of the outline, shape; any where they may not touch
   std::vector<Family> families_;
+  CoveringGround covering_;
 };
 
 }  // namespace carom

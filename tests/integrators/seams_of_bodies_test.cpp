@@ -1,6 +1,7 @@
 // Bodies of several pieces: what slides over a seam of two shapes of one body, or of two bodies that are
 // welded together, does not meet the side that the neighbour covers, wherever it starts; nor does such a body
-// that slides over a corner of the ground.
+// that slides over a corner of the ground. Nor what slides over two bodies that only lie side by side, or
+// over two obstacles that move alike.
 
 #include "tests/integrators/floor_scenes.h"
 #include "tests/random.h"
@@ -159,6 +160,58 @@ double error_of_slider(std::uint64_t seed, Schedule run) {
   return std::abs(moved.dot(frame.direction(1.0, 0.0)) - (speed * end + 0.5 * 0.2 * end * end));
 }
 
+/// Two tiles, which meet at x = 0, as boxes that stand on a plane, or as blocks that move alike.
+void add_pair(System& system, const Frame& frame, const Tile& one, const Tile& other, bool moving,
+              double speed) {
+  const Vec<2> velocity = frame.direction(speed, 0.0);
+  const planar::PrescribedMotion motion{
+      .displacement = [velocity](double t) -> Vec<2> { return t * velocity; },
+      .velocity = [velocity](double) { return velocity; },
+      .acceleration = [](double) -> Vec<2> { return Vec<2>::Zero(); }};
+  if (!moving)
+    system.add(HalfPlane{.point = frame.place(0.0, one.high), .normal = frame.direction(0.0, 1.0)});
+  for (const Tile& tile : {one, other}) {
+    Points corners = tile.vertices();
+    if (moving) {
+      for (Vec<2>& corner : corners) corner = frame.place(corner[0], corner[1]);
+      system.add(planar::Block{.vertices = corners, .motion = motion});
+      continue;
+    }
+    const Vec<2> centre(0.5 * (tile.from + tile.to), 0.5 * tile.high);
+    for (Vec<2>& corner : corners) corner -= centre;
+    const BodyId body =
+        system.add(RigidBody{.mass = box(200.0 * (tile.to - tile.from), tile.to - tile.from, -tile.high),
+                             .position = frame.place(centre[0], centre[1]),
+                             .angle = frame.angle});
+    system.add(Polygon{.body = body, .vertices = corners});
+  }
+}
+
+/// How far off its closed form something is that slides over the seam of two such tiles [m].
+double error_on_pair(std::uint64_t seed, bool moving, Schedule run) {
+  Random random(seed);
+  const Frame frame = random_frame(random);
+  System system = empty(frame, {.friction = 0.0, .normal_restitution = random.below(2) == 0 ? 0.0 : 0.3});
+  const double scatter = random.below(3) == 0 ? 0.0 : std::pow(10.0, random.uniform(-16.0, -12.0));
+  const double high = random.uniform(-0.6, -0.3), other_high = moving ? random.uniform(-0.6, -0.3) : high;
+  const double carried = moving ? random.uniform(-0.5, 0.5) : 0.0;
+  add_pair(system, frame, {-1.0, 0.0, scatter * random.uniform(-1.0, 1.0), high},
+           {0.0, 3.0, scatter * random.uniform(-1.0, 1.0), other_high}, moving, carried);
+  const double speed = random.below(3) == 0 ? 0.0 : random.uniform(0.2, 1.0),
+               force = random.uniform(0.5, 2.0);
+  const BodyId body = add_slider(system, frame, random.below(3), -random_distance(random), carried + speed);
+  push(system, {body}, frame, force);
+  const Vec<2> start = Simulation(system, TimeStepping{.step = 1e-3}).state().position(body);
+  // Over two bodies: until the middle is nearly over the seam. There it tips from one to the other by what
+  // their tops differ, which is another matter.
+  constexpr double way = 0.12;
+  const double end = moving ? 0.8 : (std::sqrt(speed * speed + 2.0 * force * way) - speed) / force;
+  const Simulation simulation = run_of(system, run, end);
+  const Vec<2> moved = simulation.state().position(body) - start;
+  const double expected = (carried + speed) * end + 0.5 * force * end * end;
+  return std::abs(moved.dot(frame.direction(1.0, 0.0)) - expected);
+}
+
 // Time stepping adds h a t / 2 to what a constant force moves.
 double allowed(Schedule run) { return run == Schedule::event_driven ? 1e-6 : 1e-3; }
 
@@ -175,6 +228,26 @@ void expect_sliders(SeedRange seeds) {
     for (const Schedule run : runs)
       EXPECT_NO_THROW(EXPECT_LT(error_of_slider(seed, run), allowed(run)) << name(run));
   }
+}
+
+// None is wrong. Impacts of a light body that stands on two free ones at once may not come to an end: one of
+// a thousand runs may end with an error that says so.
+void expect_pairs(SeedRange seeds) {
+  int all = 0, failed = 0;
+  for (std::uint64_t seed = seeds.first; seed < seeds.last; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    for (const bool moving : {false, true}) {
+      for (const Schedule run : runs) {
+        ++all;
+        try {
+          EXPECT_LT(error_on_pair(seed, moving, run), allowed(run)) << name(run) << moving;
+        } catch (const SolverError&) {
+          ++failed;
+        }
+      }
+    }
+  }
+  EXPECT_LE(failed, (all + 500) / 1000);
 }
 
 // The scene of the floors of blocks, of one body.
@@ -204,9 +277,27 @@ TEST(SeamsOfBodies, AHigherTopIsAWall) {
   }
 }
 
+// Of two bodies side by side, or obstacles that move, one that stands higher by more than surfaces may be
+// apart that touch: its side is met from as near before it as may be.
+TEST(SeamsOfBodies, SideBySideAHigherOneIsAWall) {
+  for (const bool moving : {false, true}) {
+    for (const Schedule run : runs) {
+      for (const double before : {0.0, 1e-13}) {
+        System system = empty({}, {.friction = 0.0, .normal_restitution = 0.0});
+        add_pair(system, {}, {-1.0, 0.0}, {0.0, 3.0, 2e-8}, moving, 0.0);
+        const BodyId body = add_slider(system, {}, 0, -before, 1.0);
+        EXPECT_LT(run_of(system, run, 0.3).state().position(body)[0], 2e-3) << name(run) << moving << before;
+      }
+    }
+  }
+}
+
 TEST(SeamsOfBodies, FloorsOfTilesAreFloors) { expect_floors(seeds_from(1, 20)); }
 TEST(SeamsOfBodies, SlidersOfTilesSlideOffABlock) { expect_sliders(seeds_from(1, 20)); }
 
+TEST(SeamsOfBodies, PairsSideBySideAreFloors) { expect_pairs(seeds_from(1, 20)); }
+
+TEST(SeamsOfBodiesLong, PairsSideBySideAreFloors) { expect_pairs(seeds_from(100, 500, 10000)); }
 TEST(SeamsOfBodiesLong, FloorsOfTilesAreFloors) { expect_floors(seeds_from(100, 500, 10000)); }
 TEST(SeamsOfBodiesLong, SlidersOfTilesSlideOffABlock) { expect_sliders(seeds_from(100, 500, 10000)); }
 

@@ -3,6 +3,7 @@
 #include "tests/random.h"
 
 #include <carom/contact/detection/corner_meeting.h>
+#include <carom/contact/detection/covered_side.h>
 
 #include <gtest/gtest.h>
 
@@ -153,6 +154,45 @@ TEST(CornerMeeting, FacesThatLieFlatOnEachOtherHaveOneContact) {
   const SharpCorner b = corner_of_normals(0.0, 1.0), a = corner_of_normals(2.0, pi);
   const GapPoint first = gap_along({direction(0.0), false, false}, a, b);
   EXPECT_FALSE(along_other_face(first, {a, b, 1e-9}));
+}
+
+/// Which side of the upper left corner of a box, in the origin, another box covers that lies left of it.
+HiddenSide hidden_beside(double higher, double apart, double turned = 0.0) {
+  std::vector<Vec<2>> box{{-1.0, -0.5}, {0.0, -0.5}, {0.0, 0.0}, {-1.0, 0.0}};
+  for (Vec<2>& corner : box) {
+    const Vec<2> at = corner;
+    corner = Vec<2>(std::cos(turned) * at[0] - std::sin(turned) * at[1] - apart,
+                    std::sin(turned) * at[0] + std::cos(turned) * at[1] + higher);
+  }
+  const std::vector<Vec<2>> own{{0.0, -0.5}, {2.0, -0.5}, {2.0, 0.0}, {0.0, 0.0}};
+  return side_covered_by({box, 0.0}, SharpCorner::of({own, 0.0}, 3), FeatureLengths{});
+}
+
+TEST(CornerMeeting, ANeighbourCoversASideWhereItIsFlush) {
+  const double same = FeatureLengths{}.corner;
+  for (const double part : {-0.9, 0.0, 0.9}) {
+    EXPECT_EQ(hidden_beside(part * same, 0.0), HiddenSide::behind);
+    EXPECT_EQ(hidden_beside(0.0, part * same), HiddenSide::behind);
+  }
+  for (const double part : {-2.0, 2.0}) EXPECT_EQ(hidden_beside(part * same, 0.0), HiddenSide::neither);
+  EXPECT_EQ(hidden_beside(0.0, 2.0 * same), HiddenSide::neither);
+  EXPECT_EQ(hidden_beside(0.0, 0.0, 1e-5), HiddenSide::neither);
+  EXPECT_EQ(hidden_beside(0.0, 0.0, -1e-5), HiddenSide::neither);
+}
+
+TEST(CornerMeeting, WhatSlidesOverAFlushSeamMeetsNoSide) {
+  // The lower right corner of a box, a, as near before the upper left one of the second tile as may be.
+  for (const double before : {1e-13, 1e-10}) {
+    SharpCorner tile = corner_of_normals(0.5 * pi, pi);
+    tile.hidden = HiddenSide::behind;
+    const SharpCorner box = corner_of_normals(-0.5 * pi, 0.0, {-before, 0.0});
+    CornerMeeting meeting{box, tile, 1e-9};
+    GapPoint contact = gap_along({{-1.0, 0.0}, false, true}, box, tile);
+    EXPECT_NEAR(contact.gap, before, 1e-25);
+    EXPECT_TRUE(leave_hidden_side(contact, meeting));
+    EXPECT_NEAR((contact.normal - direction(0.5 * pi)).norm(), 0.0, 1e-15);
+    EXPECT_FALSE(second_contact(contact, meeting));
+  }
 }
 
 }  // namespace
