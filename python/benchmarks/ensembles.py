@@ -20,7 +20,7 @@ import numpy
 import carom
 from carom import EventDriven, SerialExecutor, Simulation
 from carom.ensembles.outputs import Outputs
-from carom.ensembles.task import Task, run_batch
+from carom.ensembles.task import Task, run_columns
 
 SCENE = Path(__file__).parents[1] / "scenes" / "ball_between_tables.json"
 CALL = {"mode": EventDriven(), "until": 1.0, "outputs": ["energy.total", "body.ball.position"]}
@@ -49,7 +49,7 @@ def message_bytes(count: int) -> "tuple[int, int]":
     """Of what is sent for so many runs, and of what comes back."""
     task = Task(carom.load_scene(SCENE), [PATH], CALL["mode"], 1.0, Outputs(CALL["outputs"]), 0)
     points = [(0.9,)] * count
-    rows = run_batch(task, list(range(count)), points)
+    rows = run_columns(task, list(range(count)), points)
     return len(pickle.dumps((task, list(range(count)), points))), len(pickle.dumps(rows))
 
 

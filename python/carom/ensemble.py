@@ -17,7 +17,7 @@ from .ensembles.runs import Runs as Runs
 from .ensembles.runs import Shapes, Table
 from .ensembles.store import Store, find_rows
 from .ensembles.task import Failure as Failure
-from .ensembles.task import Model, Rows, Task, WrongCall
+from .ensembles.task import Columns, Model, Task, WrongCall
 from .scene.build import Mode
 
 
@@ -109,9 +109,11 @@ def _run(
             shown.close()
 
 
-def _keep(rows: Rows, points: Points, shapes: Shapes, table: Optional[Table], store: Optional[Store]) -> None:
-    shapes.check(rows, points)
+def _keep(
+    rows: Columns, points: Points, shapes: Shapes, table: Optional[Table], store: Optional[Store]
+) -> None:
+    rows = shapes.check(rows, points)
     if table is not None:
         table.add(rows)
-    if store is not None and rows.runs:
+    if store is not None and len(rows.runs) > 0:
         store.add(shapes.columns(rows, points))

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, Optional
 if TYPE_CHECKING:  # an import of carom would pay for them
     from concurrent.futures import Future, ProcessPoolExecutor
 
+import numpy
+
 from .points import Points
-from .task import Failure, Rows, Task, run_batch
+from .task import Columns, Failure, Task, run_columns
 
 _BATCH_TIME = 0.2  # of a batch [s]: a message costs a millisecond
 _GRACE = 1.0  # for batches that are under way when the user ends it [s]
@@ -62,7 +64,7 @@ class Engine:
 
         return ProcessPoolExecutor(self._processes, initializer=_ignore_interrupts)
 
-    def results(self, runs: Iterator[int]) -> Iterator[Rows]:
+    def results(self, runs: Iterator[int]) -> Iterator[Columns]:
         """Rows of all runs, as they come. Ends early, `interrupted`, on Ctrl-C."""
         from concurrent import futures
 
@@ -109,7 +111,7 @@ class Engine:
 
         points = [self._points[run] for run in batch]
         try:
-            sent[self._executor.submit(run_batch, self._task, batch, points)] = batch
+            sent[self._executor.submit(run_columns, self._task, batch, points)] = batch
         except BrokenProcessPool:
             if self._processes is None:
                 raise
@@ -125,9 +127,9 @@ class Engine:
                 break
         return batch
 
-    def _learn(self, rows: Rows) -> None:
+    def _learn(self, rows: Columns) -> None:
         """Chooses how many runs take the time of a batch."""
-        if not rows.runs:
+        if len(rows.runs) == 0:
             return
         of_run = max(rows.seconds / len(rows.runs), 1e-7)
         # Runs differ; of the slower ones a batch may last longer.
@@ -138,12 +140,12 @@ class Engine:
 
     def _taken(
         self, future: Any, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]
-    ) -> Optional[Rows]:
+    ) -> Optional[Columns]:
         """Rows of a batch; None where its process ended and it is sent again."""
         from concurrent.futures.process import BrokenProcessPool
 
         try:
-            rows: Rows = future.result()
+            rows: Columns = future.result()
             return rows
         except BrokenProcessPool:
             if self._processes is None:
@@ -155,7 +157,7 @@ class Engine:
                     batch[0], point, "its process ended", "BrokenProcessPool", [], float("nan")
                 )
                 self._executor = self._own()
-                return Rows([batch[0]], [None], [failure])
+                return Columns(numpy.array(batch), [], [failure], 0.0, False)
             lost = [batch, *sent.values()]
             sent.clear()
             self._executor = self._own()
@@ -163,7 +165,7 @@ class Engine:
             waiting.extend([run] for runs in lost for run in runs)
             return None
 
-    def _rest(self, sent: dict[Any, list[int]]) -> Iterator[Rows]:
+    def _rest(self, sent: dict[Any, list[int]]) -> Iterator[Columns]:
         """What is done of what was sent when the user ended it, or soon after."""
         from concurrent import futures
 

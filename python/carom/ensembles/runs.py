@@ -10,7 +10,8 @@ import numpy
 from .. import _core
 from .points import Points
 from .store import Columns, Store
-from .task import Failure, Rows, Task
+from .task import Columns as Results
+from .task import Failure, Task
 
 _OF_FAILURES = ("error", "error.kind", "error.parts", "error.time")
 
@@ -24,22 +25,15 @@ class Table:
         self._names = names
         self._columns: dict[str, numpy.ndarray] = {}
 
-    def add(self, rows: Rows) -> None:
-        """Takes rows. A run whose outputs have other shapes than those of the first one has failed."""
-        for run, values in zip(rows.runs, rows.values):
-            self.done[run] = True
-            if values is not None:
-                self._put(run, values)
+    def add(self, rows: Results) -> None:
+        """Takes rows."""
+        self.done[rows.runs] = True
+        for name, values in zip(self._names, rows.values):
+            if name not in self._columns:
+                self._columns[name] = numpy.full((len(self.done), *values.shape[1:]), numpy.nan)
+            self._columns[name][rows.runs] = values
         for failure in rows.failures:
             self.failures[failure.run] = failure
-
-    def _put(self, run: int, values: list[Any]) -> None:
-        for name, value in zip(self._names, values):
-            column = self._columns.get(name)
-            if column is None:
-                shape = (len(self.done), *numpy.shape(value))
-                column = self._columns[name] = numpy.full(shape, numpy.nan)
-            column[run] = value
 
     def column(self, name: str) -> numpy.ndarray:
         """Values of an output by run."""
@@ -74,50 +68,37 @@ class Shapes:
         self._names = names
         self._shapes: Optional[list[tuple[int, ...]]] = None
 
-    def check(self, rows: Rows, points: Points) -> None:
-        """Makes failures of runs with other shapes."""
-        for place, values in enumerate(rows.values):
-            if values is None:
-                continue
-            shapes = [numpy.shape(value) for value in values]
-            if self._shapes is None:
-                self._shapes = shapes
-            for name, shape, first in zip(self._names, shapes, self._shapes):
-                if shape == first:
-                    continue
-                run = rows.runs[place]
-                text = f"output {name!r}: has shape {shape}, of other runs {first}; allowed: one shape"
-                shown = dict(zip(points.names, points[run]))
-                rows.failures.append(Failure(run, shown, text, "ModelError", [], float("nan")))
-                rows.values[place] = None
-                break
+    def check(self, rows: Results, points: Points) -> Results:
+        """The same; runs with other shapes have failed."""
+        if not rows.values:
+            return rows
+        if self._shapes is None:
+            self._shapes = rows.shapes
+        if rows.shapes == self._shapes:
+            return rows
+        given = [dict(zip(points.names, points[int(run)])) for run in rows.runs]
+        return rows.without(self._names, self._shapes, given)
 
-    def columns(self, rows: Rows, points: Points) -> Columns:
+    def columns(self, rows: Results, points: Points) -> Columns:
         """Rows as columns of a file: number, parameters, outputs, error."""
-        made: Columns = {"run": numpy.array(rows.runs, dtype=numpy.int64)}
+        made: Columns = {"run": rows.runs}
+        given = [points[int(run)] for run in rows.runs]
         for place, name in enumerate(points.names):
             if name:
-                values = [points[run][place] for run in rows.runs]
-                array = numpy.array(values)
-                made[name] = array if array.dtype.kind in "biuf" else numpy.array([str(value) for value in values])
+                array = numpy.array([point[place] for point in given])
+                made[name] = array if array.dtype.kind in "biuf" else numpy.array([str(value) for value in array])
         shapes = self._shapes or [()] * len(self._names)
-        for place, (name, shape) in enumerate(zip(self._names, shapes)):
-            column = numpy.full((len(rows.runs), *shape), numpy.nan)
-            for row, values_of_run in enumerate(rows.values):
-                if values_of_run is not None:
-                    column[row] = values_of_run[place]
-            made[name] = column
-        failures = {failure.run: failure for failure in rows.failures}
-        texts: list[tuple[str, str, str]] = []
-        for run in rows.runs:
-            failure = failures.get(run)
-            texts.append(("", "", "") if failure is None else (failure.message, failure.kind, "\n".join(failure.parts)))
-        for place, name in enumerate(_OF_FAILURES[:3]):
-            made[name] = numpy.array([text[place] for text in texts], dtype=object)
-        made["error.time"] = numpy.array(
-            [failures[run].time if run in failures else numpy.nan for run in rows.runs]
-        )
-        return made
+        missing = [numpy.full((len(rows.runs), *shape), numpy.nan) for shape in shapes]
+        made.update(zip(self._names, rows.values or missing))
+        texts = {name: numpy.full(len(rows.runs), "", dtype=object) for name in _OF_FAILURES[:3]}
+        reached = numpy.full(len(rows.runs), numpy.nan)
+        places = {int(run): place for place, run in enumerate(rows.runs)} if rows.failures else {}
+        for failure in rows.failures:
+            said = (failure.message, failure.kind, "\n".join(failure.parts))
+            for name, text in zip(_OF_FAILURES, said):
+                texts[name][places[failure.run]] = text
+            reached[places[failure.run]] = failure.time
+        return {**made, **texts, "error.time": reached}
 
 
 class Runs:
