@@ -1,6 +1,7 @@
 """The commands `carom sweep` and `carom fit`."""
 
 import csv
+import sys
 
 import numpy
 import pytest
@@ -82,6 +83,17 @@ def test_wrong_sweeps_are_refused(words, scene, capsys):
     except SystemExit as end:
         assert end.code == code
     assert text in capsys.readouterr().err
+
+
+def test_engines_that_are_not_there_are_named(scene, capsys, monkeypatch):
+    vary = ["--vary", "body.ball.spin=1,2"]
+    monkeypatch.setitem(sys.modules, "mpi4py.futures", None)
+    assert main(["sweep", scene, *vary, "--mpi"]) == 1
+    assert "--mpi needs mpi4py" in capsys.readouterr().err
+    dask = pytest.importorskip("dask")
+    with dask.config.set({"distributed.comm.timeouts.connect": "0.2s"}):
+        assert main(["sweep", scene, *vary, "--dask", "tcp://127.0.0.1:1"]) == 1
+    assert "there is no scheduler at tcp://127.0.0.1:1" in capsys.readouterr().err
 
 
 def test_wrong_data_are_refused(scene, tmp_path, capsys):

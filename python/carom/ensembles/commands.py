@@ -76,15 +76,26 @@ def _erring(text: str) -> tuple[str, float]:
     return name, _number(rest)
 
 
+def _module(name: str, needed: str) -> Any:
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise _core.ModelError(f"{needed}: {error}") from error
+
+
 @contextlib.contextmanager
 def _executor(options: argparse.Namespace) -> Iterator[Any]:
-    """What the command line asks for. Raises ImportError where a package is missing."""
+    """What the command line asks for. Raises ModelError where it is not to be had."""
     if options.dask:
-        distributed = importlib.import_module("dask.distributed")
-        with distributed.Client(options.dask) as client:
+        distributed = _module("dask.distributed", "--dask needs Dask (pip install 'dask[distributed]')")
+        try:
+            client = distributed.Client(options.dask)
+        except (OSError, ValueError) as error:
+            raise _core.ModelError(f"--dask: there is no scheduler at {options.dask}: {error}") from error
+        with client:
             yield client.get_executor()
     elif options.mpi:
-        futures = importlib.import_module("mpi4py.futures")
+        futures = _module("mpi4py.futures", "--mpi needs mpi4py (pip install mpi4py)")
         with futures.MPIPoolExecutor() as pool:
             yield pool
     else:
