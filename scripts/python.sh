@@ -10,6 +10,8 @@ scripts/python_environment.sh pytest h5py jsonschema pandas mypy nbclient nbform
 venv="$PWD/build/python-test"
 # Reads what carom.vtk writes; there is not one for every Python.
 flock build/python.lock "$venv/bin/pip" -q install vtk || echo "python.sh: without VTK its test is left out" >&2
+# There is not an MPI for every machine.
+flock build/python.lock "$venv/bin/pip" -q install mpi4py || echo "python.sh: without mpi4py its test is left out" >&2
 flock build/python.lock cmake --build build/release --target all_examples reference_runs --parallel "$(nproc)"
 
 status=0

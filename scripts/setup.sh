@@ -19,7 +19,7 @@ packages=(
 for argument in "$@"; do
   case "$argument" in
     --docs) packages+=(doxygen) ;;
-    --python) packages+=(python3-venv python3-dev) ;;
+    --python) packages+=(python3-venv python3-dev openmpi-bin) ;;
     --node) packages+=(nodejs npm) ;;
     --browser) packages+=(chromium chromium-driver fonts-dejavu-core) ;;
     --checks) packages+=(clang clang-format clang-tidy libclang-rt-dev libomp-dev git doxygen) ;;

@@ -3,6 +3,7 @@
 import concurrent.futures
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -383,3 +384,32 @@ def test_what_is_shown(tmp_path):
     counts = []
     carom.ensemble(thrown_ball(), GRID, executor=1, progress=counts.append, **CALL)
     assert counts[-1] == 51 and counts == sorted(counts)
+
+
+def test_ranks_of_mpi_give_the_same_rows(tmp_path):
+    pytest.importorskip("mpi4py")
+    mpiexec = shutil.which("mpiexec") or pytest.skip("there is no mpiexec")
+    scene = tmp_path / "ball.json"
+    carom.save_scene(thrown_ball(), scene, mode=EventDriven(), until=0.8)
+    vary = ["--vary", "surface.floor.normal_restitution=0.1:0.9:40", "--output", "energy.total", "--output", "events.count"]
+    sweep = ["-m", "carom", "sweep", str(scene), *vary]
+    file = tmp_path / "rows.h5"
+    pytest.importorskip("h5py")
+    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    ranks = [mpiexec, "-n", "3", *(["--oversubscribe"] if "open" in mpi_of(mpiexec, environment) else [])]
+    subprocess.run(
+        [*ranks, sys.executable, "-m", "mpi4py.futures", *sweep, "--mpi", "--file", str(file)],
+        check=True,
+        capture_output=True,
+        timeout=120,
+        env=environment,
+    )
+    grid = {"surface.floor.normal_restitution": numpy.linspace(0.1, 0.9, 40)}
+    call = {"outputs": ["energy.total", "events.count"], "executor": SerialExecutor()}
+    assert rows(carom.ensemble(scene, grid, file=file, **call)) == rows(carom.ensemble(scene, grid, **call))
+
+
+def mpi_of(mpiexec, environment):
+    """What mpiexec says of itself."""
+    said = subprocess.run([mpiexec, "--version"], capture_output=True, text=True, env=environment)
+    return (said.stdout + said.stderr).lower()

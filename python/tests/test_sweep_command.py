@@ -35,6 +35,10 @@ def test_a_sweep_goes_into_a_file(scene, tmp_path, capsys):
     for _ in range(2):
         assert main([*words, "--processes", "0"]) == 0
         assert "4 runs, 0 failed" in capsys.readouterr().out
+    assert main(["sweep", scene, "--vary", "until=0.1,0.4", "--output", "time", "--processes", "0"]) == 0
+    assert capsys.readouterr().out.splitlines()[1:3] == ["0.1  0.1", "0.4  0.4"]
+    assert main([*words, "--processes", "0", "--until", "1"]) == 1
+    assert "allowed: one of both" in capsys.readouterr().err
     assert main([*words, "--processes", "0", "--vary", "body.ball.spin=1"]) == 1
     assert "another ensemble (parameters)" in capsys.readouterr().err
 
@@ -90,7 +94,9 @@ def test_engines_that_are_not_there_are_named(scene, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "mpi4py.futures", None)
     assert main(["sweep", scene, *vary, "--mpi"]) == 1
     assert "--mpi needs mpi4py" in capsys.readouterr().err
-    dask = pytest.importorskip("dask")
+    pytest.importorskip("dask.distributed")  # with its own settings, of which one is changed
+    import dask
+
     with dask.config.set({"distributed.comm.timeouts.connect": "0.2s"}):
         assert main(["sweep", scene, *vary, "--dask", "tcp://127.0.0.1:1"]) == 1
     assert "there is no scheduler at tcp://127.0.0.1:1" in capsys.readouterr().err

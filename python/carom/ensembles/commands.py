@@ -102,19 +102,18 @@ def _executor(options: argparse.Namespace) -> Iterator[Any]:
         yield SerialExecutor() if options.processes == 0 else options.processes
 
 
-def _scene(options: argparse.Namespace) -> tuple[Scene, Any, Optional[float]]:
-    """The scene, with the mode and the end that the command line gives."""
+def _scene(options: argparse.Namespace) -> tuple[Scene, Any]:
+    """The scene, and the mode that the command line gives; None: as the scene says."""
     scene = load_scene(options.scene)
-    mode: Any = scene.mode
-    if options.mode is not None:
-        wanted = getattr(_core, MODES[options.mode])
-        mode = scene.mode if isinstance(scene.mode, wanted) else wanted()
-    return scene, mode, scene.until if options.until is None else options.until
+    if options.mode is None:
+        return scene, None
+    wanted = getattr(_core, MODES[options.mode])
+    return scene, scene.mode if isinstance(scene.mode, wanted) else wanted()
 
 
 def sweep(options: argparse.Namespace) -> int:
     """carom sweep: runs a scene with many values of its numbers; a table, or a file of rows."""
-    scene, mode, until = _scene(options)
+    scene, mode = _scene(options)
     grid = dict(options.vary)
     if len(grid) < len(options.vary):
         raise _core.ModelError("--vary: a path is given twice; allowed: each once")
@@ -123,7 +122,7 @@ def sweep(options: argparse.Namespace) -> int:
             scene,
             grid,
             mode=mode,
-            until=until,
+            until=options.until,
             outputs=options.output or ["energy.total"],
             executor=executor,
             file=options.file,
@@ -198,7 +197,7 @@ def _measurements(path: Path, errors: dict[str, float]) -> list[Any]:
 
 def fit(options: argparse.Namespace) -> int:
     """carom fit: finds numbers of a scene with which its run fits measurements."""
-    scene, mode, until = _scene(options)
+    scene, mode = _scene(options)
     if not isinstance(mode, _core.EventDriven):
         mode = None
     measurements = _measurements(options.data, dict(options.error))

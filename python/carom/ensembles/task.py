@@ -168,6 +168,8 @@ class Task:
             self._function = model
         else:
             self._data = _data_of(model)
+            if until is not None and any(name in ("until", "simulation.until") for name in names):
+                raise _core.ModelError("ensemble: until is given, and a parameter too; allowed: one of both")
             self._data = _with_mode(self._data, self._mode)
             self._template  # raises where a path is wrong
 
