@@ -130,7 +130,7 @@ public:
   /// Tells the places of internal variables, before the layout is given to anyone.
   void place_internals(std::vector<InternalSlot> internals);
 
-  /// Tells the joints, likewise.
+  /// Tells the joints, before the layout is given to anyone.
   void place_joints(std::shared_ptr<const JointTable> joints);
 
   [[nodiscard]] int dimension() const { return dimension_; }            ///< 2 or 3

@@ -44,7 +44,7 @@ inline constexpr double flush_part = 1e-9;
 /// stay as they are.
 CAROM_API void join_flush_faces(std::span<RestingShape> shapes);
 
-/// Likewise of shapes that have to stay convex, one sharp solid each, because they touch others that move:
+/// Makes faces of shapes that have to stay convex, one sharp solid each, because they touch others that move:
 /// corners from which a face goes on in one of a neighbour are changed by little, so that nothing that slides
 /// over them meets the side that the neighbour covers (DrawnOutline, drawn_outline.h). Other shapes stay as
 /// they are. \param may_cover says of two shapes whether the first may cover the second one

@@ -82,7 +82,7 @@ struct OutlinePair {
   bool is_hollow = false;          ///< the outline is a circle that the vertex is inside of
   Index corner = none;  ///< vertex of the outline that may meet the vertex of the pair; `none`: none is near
   HiddenSide hidden = HiddenSide::neither;            ///< the side of that corner that a neighbour covers
-  HiddenSide hidden_of_vertex = HiddenSide::neither;  ///< likewise of the vertex
+  HiddenSide hidden_of_vertex = HiddenSide::neither;  ///< the side of the vertex that one covers
 
   /// The vertex, in the frame of the outline [m].
   [[nodiscard]] Vec<2> vertex_at_outline() const {

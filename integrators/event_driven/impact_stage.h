@@ -74,7 +74,7 @@ public:
   /// Settles what the impacts left slower than the capture speed, and solves the impacts that this leads to.
   /// \param at brought to the state after the impacts; is so again
   void settle(EventInstant& at);
-  /// Likewise of one island, once. False if there was nothing to settle.
+  /// Settles one island, once. False if there was nothing to settle.
   [[nodiscard]] bool settle(std::span<const Index> pairs, EventInstant& at);
   /// Applies the answer of a problem of contacts of one island, books and records it.
   void apply(EventKind kind, const IslandProblem& problem, EventInstant& at);

@@ -44,7 +44,7 @@ struct SearchedStep {
     motion.sample(time, memory.y.data(), Forces::all, memory.within);
     return memory.within;
   }
-  /// Likewise for gaps, which do not ask for the forces of contact themselves.
+  /// A sample within the step for looks at gaps, which do not ask for the forces of contact themselves.
   const MotionSample& sample_for_gaps(double time) {
     memory.y.resize(motion.size());
     flow.sample(time, memory.y);
