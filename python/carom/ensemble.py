@@ -17,7 +17,7 @@ from .ensembles.runs import Runs as Runs
 from .ensembles.runs import Shapes, Table
 from .ensembles.store import Store, find_rows
 from .ensembles.task import Failure as Failure
-from .ensembles.task import Columns, Model, Task, WrongCall
+from .ensembles.task import Model, Results, Task, WrongCall
 from .scene.build import Mode
 
 
@@ -110,7 +110,7 @@ def _run(
 
 
 def _keep(
-    rows: Columns, points: Points, shapes: Shapes, table: Optional[Table], store: Optional[Store]
+    rows: Results, points: Points, shapes: Shapes, table: Optional[Table], store: Optional[Store]
 ) -> None:
     rows = shapes.check(rows, points)
     if table is not None:

@@ -10,7 +10,7 @@ from typing import Any, Optional, Union
 
 import numpy
 
-from ._core import Error, EventDriven, ModelError
+from ._core import EventDriven, ModelError
 from .ensembles.comparison import AtImpact as AtImpact
 from .ensembles.comparison import Comparison, Measurement
 from .ensembles.comparison import Measured as Measured
@@ -206,5 +206,3 @@ def _lengths(jacobian: numpy.ndarray, least: float = 1.0) -> numpy.ndarray:
     lengths = numpy.linalg.norm(jacobian, axis=0)
     return numpy.where(lengths > 0.0, lengths, least)
 
-
-__all__ = ["AtImpact", "Error", "Free", "Identified", "Measured", "MeasuredImpacts", "identify"]

@@ -142,7 +142,7 @@ double error_on_floor(std::uint64_t seed, Schedule run) {
   return std::abs(moved.dot(frame.direction(1.0, 0.0)) - (speed * end + 0.5 * force * end * end));
 }
 
-/// Likewise of such tiles that slide over the end of a block.
+/// Runs of rows of tiles, of one body or welded, that slide over the end of a block.
 double error_of_slider(std::uint64_t seed, Schedule run) {
   Random random(seed);
   const Frame frame = random_frame(random);

@@ -14,7 +14,7 @@ if TYPE_CHECKING:  # an import of carom would pay for them
 import numpy
 
 from .points import Points
-from .task import Columns, Failure, Task, run_columns
+from .task import Failure, Results, Task, run_columns
 
 _BATCH_TIME = 0.2  # of a batch [s]: a message costs a millisecond
 _GRACE = 1.0  # for batches that are under way when the user ends it [s]
@@ -64,15 +64,17 @@ class Engine:
 
         return ProcessPoolExecutor(self._processes, initializer=_ignore_interrupts)
 
-    def results(self, runs: Iterator[int]) -> Iterator[Columns]:
+    def results(self, runs: Iterator[int]) -> Iterator[Results]:
         """Rows of all runs, as they come. Ends early, `interrupted`, on Ctrl-C."""
         from concurrent import futures
 
         waiting: deque[list[int]] = deque()
         sent: dict[futures.Future[Any], list[int]] = {}
+        batch: Optional[list[int]]
         try:
             while True:
-                while len(sent) < self._most_sent:
+                # Of runs that ended a process it shows which did where each is alone.
+                while len(sent) < (1 if waiting else self._most_sent):
                     batch = waiting.popleft() if waiting else self._next(runs)
                     if not batch:
                         break
@@ -80,8 +82,11 @@ class Engine:
                 if not sent:
                     return
                 done, _ = futures.wait(sent, return_when=futures.FIRST_COMPLETED)
-                for future in done:
-                    batch = sent.pop(future)
+                # In their order, not in that of a set: the first row says the shapes of all.
+                for future in sorted(done, key=lambda each: sent[each]):
+                    batch = sent.pop(future, None)
+                    if batch is None:  # lost with its process, and waiting already
+                        continue
                     rows = self._taken(future, batch, sent, waiting)
                     if rows is None:
                         continue
@@ -127,7 +132,7 @@ class Engine:
                 break
         return batch
 
-    def _learn(self, rows: Columns) -> None:
+    def _learn(self, rows: Results) -> None:
         """Chooses how many runs take the time of a batch."""
         if len(rows.runs) == 0:
             return
@@ -140,32 +145,31 @@ class Engine:
 
     def _taken(
         self, future: Any, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]
-    ) -> Optional[Columns]:
+    ) -> Optional[Results]:
         """Rows of a batch; None where its process ended and it is sent again."""
         from concurrent.futures.process import BrokenProcessPool
 
         try:
-            rows: Columns = future.result()
+            rows: Results = future.result()
             return rows
         except BrokenProcessPool:
             if self._processes is None:
                 raise
-            # Every batch that was under way is lost. Which run ends the process shows where each is alone.
+            # Every batch that was under way is lost, and made again run by run.
             if len(batch) == 1 and not sent:
                 point = dict(zip(self._points.names, self._points[batch[0]]))
                 failure = Failure(
                     batch[0], point, "its process ended", "BrokenProcessPool", [], float("nan")
                 )
                 self._executor = self._own()
-                return Columns(numpy.array(batch), [], [failure], 0.0, False)
+                return Results(numpy.array(batch), [], [failure], 0.0, False)
             lost = [batch, *sent.values()]
             sent.clear()
             self._executor = self._own()
-            self._most_sent = 1  # from now on one batch at a time, and those that were lost run by run
             waiting.extend([run] for runs in lost for run in runs)
             return None
 
-    def _rest(self, sent: dict[Any, list[int]]) -> Iterator[Columns]:
+    def _rest(self, sent: dict[Any, list[int]]) -> Iterator[Results]:
         """What is done of what was sent when the user ended it, or soon after."""
         from concurrent import futures
 

@@ -126,8 +126,11 @@ class Outputs:
         self.names = list(named)
         self._outputs = list(named.values())
         self._readers = [self._compiled(output) for output in self._outputs]
-        times = {time for output in self._outputs if isinstance(output, Trace) for time in output.times}
-        self._times = sorted(times)
+        self._traced: dict[float, list[int]] = {}  # places of the traces, by time
+        for place, output in enumerate(self._outputs):
+            for time in output.times if isinstance(output, Trace) else ():
+                self._traced.setdefault(float(time), []).append(place)
+        self._times = sorted(self._traced)
 
     def __reduce__(self) -> Any:
         return Outputs, (dict(zip(self.names, self._outputs)),)
@@ -155,9 +158,8 @@ class Outputs:
                 raise _core.ModelError(f"trace: a time is {time:g} s; allowed: up to the end of the run, {until:g} s")
             if time > simulation.time():
                 simulation.run_until(time)
-            for place, output in enumerate(self._outputs):
-                if isinstance(output, Trace) and time in output.times:
-                    traces.setdefault(place, []).append(self._read(place, simulation, system))
+            for place in self._traced[time]:
+                traces.setdefault(place, []).append(self._read(place, simulation, system))
         if until > simulation.time():
             simulation.run_until(until)
         return [

@@ -64,7 +64,7 @@ class Points:
         if self._rows:
             return axis
         inner = math.prod(len(other) for other in self._axes[place + 1 :])
-        return numpy.tile(numpy.repeat(axis, inner, axis=0), (self._count // (inner * len(axis)), *[1] * (axis.ndim - 1))) if axis.ndim > 1 else numpy.tile(numpy.repeat(axis, inner), self._count // (inner * len(axis)))
+        return axis[numpy.arange(self._count) // inner % len(axis)]
 
     def fingerprint(self) -> str:
         """Tells other parameters from these."""

@@ -10,8 +10,7 @@ import numpy
 from .. import _core
 from .points import Points
 from .store import Columns, Store
-from .task import Columns as Results
-from .task import Failure, Task
+from .task import Failure, Results, Task
 
 _OF_FAILURES = ("error", "error.kind", "error.parts", "error.time")
 

@@ -70,7 +70,7 @@ class Rows:
 
 
 @dataclass
-class Columns:
+class Results:
     """Results of some runs as arrays, which travel and are kept at a tenth of the cost of rows: a column for each output,
     NaN where a run failed; none where all of them failed.
     """
@@ -86,7 +86,7 @@ class Columns:
         """Of one run's outputs."""
         return [column.shape[1:] for column in self.values]
 
-    def without(self, names: list[str], shapes: list[tuple[int, ...]], points: Sequence[dict[str, Any]]) -> Columns:
+    def without(self, names: list[str], shapes: list[tuple[int, ...]], points: Sequence[dict[str, Any]]) -> Results:
         """The same, where every run has failed whose outputs should have other shapes. points: of the runs."""
         name, shape, wanted = next(
             (name, shape, wanted) for name, shape, wanted in zip(names, self.shapes, shapes) if shape != wanted
@@ -97,7 +97,7 @@ class Columns:
             for run, point in zip(self.runs, points)
             if int(run) not in failed
         ]
-        return Columns(self.runs, [], [*self.failures, *more], self.seconds, self.interrupted)
+        return Results(self.runs, [], [*self.failures, *more], self.seconds, self.interrupted)
 
 
 def _other_shape(run: int, point: dict[str, Any], name: str, shape: tuple[int, ...], wanted: tuple[int, ...]) -> Failure:
@@ -270,10 +270,10 @@ def run_batch(task: Task, runs: Sequence[int], points: Sequence[Point]) -> Rows:
     return rows
 
 
-def run_columns(task: Task, runs: Sequence[int], points: Sequence[Point]) -> Columns:
+def run_columns(task: Task, runs: Sequence[int], points: Sequence[Point]) -> Results:
     """run_batch(), as arrays. The shapes of outputs are those of the first run that ended well."""
     rows = run_batch(task, runs, points)
-    made = Columns(numpy.array(rows.runs, dtype=numpy.int64), [], rows.failures, rows.seconds, rows.interrupted)
+    made = Results(numpy.array(rows.runs, dtype=numpy.int64), [], rows.failures, rows.seconds, rows.interrupted)
     names = task.outputs.names
     for place, values in enumerate(rows.values):
         if values is None:
