@@ -10,6 +10,25 @@ namespace carom {
 
 namespace {
 
+/// Against impulses that change free velocities where no other contact acts. Newton's law gains up to some
+/// hundred times the energy with impulses of a few hundred times those.
+constexpr double without_measure = 1e4;
+
+/// Whether impulses are far larger than those that change velocities where no other contact acts.
+bool is_without_measure(const ContactProblem& problem, std::span<const double> impulse) {
+  if (problem.groups().size() < 2) return false;
+  double usual = 0.0, largest = 0.0;
+  for (const RowGroup& group : problem.groups()) {
+    const double trace = group_trace(problem, group);
+    const auto first = static_cast<std::size_t>(group.first);
+    for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
+      largest = std::max(largest, std::abs(impulse[row]));
+      if (trace > 0.0) usual = std::max(usual, std::abs(problem.vector()[row]) / trace);
+    }
+  }
+  return largest > without_measure * usual;
+}
+
 /// Takes the restitution from a problem. False if it had none.
 bool remove_restitution(const AnsweredProblem& at) {
   bool any = false;
@@ -26,8 +45,17 @@ bool remove_restitution(const AnsweredProblem& at) {
 }  // namespace
 
 void PlasticJam::resolve(const AnsweredProblem& at, bool by_newton, SolverChain& chain) {
+  const auto unmeasured = [&] {
+    return by_newton && at.answer.report.usable() && is_without_measure(at.problem, at.answer.impulse);
+  };
+  if (at.answer.report.usable() && !unmeasured()) return;
+  if (!at.answer.report.usable() || adds_energy(at)) remove(at, chain);
+  if (unmeasured()) give_way(at, chain);
+}
+
+// Solves the problem without restitution.
+void PlasticJam::remove(const AnsweredProblem& at, SolverChain& chain) {
   const bool had_answer = at.answer.report.usable();
-  if (had_answer && !(by_newton && at.problem.groups().size() > 1 && adds_energy(at))) return;
   if (had_answer) keep(at);
   if (!remove_restitution(at)) return;
   // Those of a jam have grown without bound.
@@ -38,24 +66,47 @@ void PlasticJam::resolve(const AnsweredProblem& at, bool by_newton, SolverChain&
   if (!found_) restore(at);
 }
 
-// With xi = W P + b the energy is P.(b + xi)/2 - P.E gamma^-. Of an answer P.xi <= 0, and W is not negative:
-// without the last part there is no gain.
+// With xi = W P + b the energy is P.(b + xi)/2 - P.E gamma^-. Of an answer P.xi <= 0 but for its rounding,
+// and W is not negative: what restitution gives back, and what rounding does to impulses without measure,
+// adds.
 bool PlasticJam::adds_energy(const AnsweredProblem& at) {
   constexpr double rounding = 1e-9;  // of the works: an answer has some
   const std::vector<double>& impulse = at.answer.impulse;
-  double given_back = 0.0;
-  for (std::size_t row = 0; row < impulse.size(); ++row)
-    given_back -= at.restitution[row] * at.before[row] * impulse[row];
-  if (!(given_back > 0.0)) return false;
   xi_.resize(impulse.size());
   at.problem.velocities(impulse, xi_);
-  double gain = given_back, works = given_back;
+  double gain = 0.0, works = 0.0;
   for (std::size_t row = 0; row < impulse.size(); ++row) {
+    const double given_back = -at.restitution[row] * at.before[row] * impulse[row];
     const double work = 0.5 * impulse[row] * (at.problem.vector()[row] + xi_[row]);
-    gain += work;
-    works += std::abs(work);
+    gain += work + given_back;
+    works += std::abs(work) + std::abs(given_back);
   }
   return gain > rounding * works;
+}
+
+// The answer of W + s D and b, with D the traces of the groups: its impulses are bounded by b/(s D), and over
+// ground at rest it adds no energy, since P.xi is negative by P.s D P at least.
+void PlasticJam::give_way(const AnsweredProblem& at, SolverChain& chain) {
+  constexpr double softness = 1e-6, nearly = 1e-4;  // of W, of the velocities
+  if (at.problem.is_factored()) return;
+  yielding_ = at.problem;
+  for (const RowGroup& group : yielding_.groups()) {
+    const double added = softness * group_trace(at.problem, group);
+    for (int i = group.first; i < group.first + group.size; ++i) yielding_.w(i, i) += added;
+  }
+  answer_ = at.answer;
+  std::fill(answer_.impulse.begin(), answer_.impulse.end(), 0.0);
+  answer_.known = false;
+  chain.solve(yielding_, answer_);
+  if (!answer_.report.usable()) return;
+  xi_.resize(answer_.impulse.size());
+  at.problem.velocities(answer_.impulse, xi_);
+  if (!(residual_of_velocities(at.problem, answer_.impulse, xi_) <= nearly)) return;
+  const Residual found = residual(at.problem, answer_.impulse, xi_);
+  answer_.report.residual = found.value;
+  answer_.report.worst_group = found.group;
+  answer_.report.outcome = Outcome::accepted_at_cap;
+  std::swap(at.answer, answer_);
 }
 
 void PlasticJam::keep(const AnsweredProblem& at) {
@@ -72,11 +123,8 @@ void PlasticJam::restore(const AnsweredProblem& at) const {
   at.answer = answer_;
 }
 
-// Against those of the answer without restitution, and those that change free velocities where no other
-// contact acts. Newton's law gains up to some hundred times the energy with impulses of a few hundred times
-// those.
+// Against those of the answer without restitution too.
 bool PlasticJam::were_without_measure(const AnsweredProblem& at) const {
-  constexpr double without_measure = 1e4;
   double usual = 0.0, kept = 0.0;
   for (const RowGroup& group : at.problem.groups()) {
     const double trace = group_trace(at.problem, group);

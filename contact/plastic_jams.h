@@ -7,7 +7,8 @@
 /// other) there is an answer whose impulses are without measure, as any velocity that the law demands has to
 /// come from the trifle: bodies are shot away. Without restitution P.b is 0, there is an answer (the matrix
 /// of the complementarity problem is copositive: Cottle, Pang and Stone 1992, theorem 3.8.6), and it adds no
-/// energy in an impact.
+/// energy in an impact. Where the trifle is rounding, a solver may end without measure all the same: then
+/// contacts are solved that give way a little.
 
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
@@ -34,12 +35,15 @@ public:
   /// True if restitution was taken from the problem.
   [[nodiscard]] bool found() const { return found_; }
   /// Solves a problem without an answer, and one of Newton's law whose answer adds energy by impulses without
-  /// measure, without restitution, where all laws are one. \param by_newton the answer is that of Newton's
-  /// law
+  /// measure, without restitution, where all laws are one. An answer whose impulses are without measure even
+  /// then is replaced by that of contacts that give way by a millionth, where it obeys the law nearly.
+  /// \param by_newton the answer is that of Newton's law
   void resolve(const AnsweredProblem& at, bool by_newton, SolverChain& chain);
 
 private:
   [[nodiscard]] bool adds_energy(const AnsweredProblem& at);
+  void remove(const AnsweredProblem& at, SolverChain& chain);
+  void give_way(const AnsweredProblem& at, SolverChain& chain);
   void keep(const AnsweredProblem& at);
   void restore(const AnsweredProblem& at) const;
   [[nodiscard]] bool were_without_measure(const AnsweredProblem& at) const;
@@ -47,6 +51,7 @@ private:
   bool found_ = false;
   std::vector<double> b_, restitution_, given_, xi_;  // of the problem with restitution
   ContactSolution answer_;
+  ContactProblem yielding_;
 };
 
 }  // namespace carom
