@@ -24,6 +24,7 @@ void evaluate_rotations(const Assembly& assembly, Range bodies, const StateView&
 
 void evaluate_positions(const Assembly& assembly, Index component, const StateView& state, Evaluation& out) {
   evaluate_rotations(assembly, assembly.components()[component].bodies, state, out);
+  if (!out.placed_at.empty()) out.placed_at[component] = state.time;
 }
 
 void evaluate_positions(const Assembly& assembly, const StateView& state, Evaluation& out) {

@@ -21,6 +21,8 @@ struct Loads {
 struct Evaluation {
   // depends on position
   std::vector<double> rotation;  ///< rotations of oriented bodies, at BodySlot::rotation
+  /// By component, the time of the state that its bodies stand in [s]. Empty where all stand in one.
+  std::vector<double> placed_at;
 
   // depends on position, velocity and time
   std::vector<double> force;  ///< sum of all loads, over all velocities [N, N m]

@@ -77,8 +77,12 @@ void BodyContacts::find_hidden_sides(OutlinePair& at, const MeetingCorners& corn
   const std::vector<BodyOutline>& list = outlines_.list();
   ShortList<Vec<2>, 32> vertices;
   const Vec<2> place = at.vertex_frame.outside(at.vertex);
+  // Of bodies that are apart in the event-driven mode some stand where they were at another time.
+  const auto is_placed = [&](Index body) {
+    return evaluation.placed_at.empty() || evaluation.placed_at[assembly_->component_of(body)] == state.time;
+  };
   for (Index i = 0; i < list.size(); ++i) {
-    if (i == of[0] || i == of[1] || !has_sides(list[i])) continue;
+    if (i == of[0] || i == of[1] || !has_sides(list[i]) || !is_placed(list[i].body)) continue;
     const BodySlot& slot = assembly_->layout()->bodies()[list[i].body];
     const Vec<2> apart = place - Vec<2>(state.q[slot.q], state.q[slot.q + 1]);
     const double reach = list[i].reach + at.lengths.sunk() + at.lengths.corner;

@@ -58,6 +58,8 @@ EventDriver::EventDriver(const Assembly& assembly, const EventDriven& options, c
   constexpr std::size_t few = 8;
   modes_.reserve(few);
   if (!detector_.bodies_touch()) return;
+  for (MotionSample* sample : {&memory_.instant.now, &memory_.motion.flow})
+    sample->note_places(assembly.components().size());
   meetings_ = std::make_unique<GroupMeetings>(assembly, detector_, options_, memory_, groups_);
 }
 

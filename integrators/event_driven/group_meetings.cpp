@@ -19,7 +19,9 @@ GroupMeetings::GroupMeetings(const Assembly& assembly, const Detector& detector,
       search_(assembly, detector, groups, flights_, options),
       now_(assembly),
       end_(assembly),
-      joined_(assembly.layout()) {}
+      joined_(assembly.layout()) {
+  for (MotionSample* sample : {&now_, &end_}) sample->note_places(assembly.components().size());
+}
 
 /// Distance at which bodies take part in an event of their neighbours [m].
 double GroupMeetings::near() const {

@@ -24,7 +24,9 @@ namespace carom {
 class CAROM_API GroupSamples {
 public:
   /// Memory for any group of a model.
-  explicit GroupSamples(const Assembly& assembly) : at_(assembly) {}
+  explicit GroupSamples(const Assembly& assembly) : at_(assembly) {
+    at_.note_places(assembly.components().size());
+  }
   /// Forgets all: groups went on.
   void forget() { known_.clear(); }
   /// Two groups at a time within their steps, by interpolation.
@@ -50,7 +52,9 @@ public:
         options_(&options),
         begins_(assembly),
         ends_(assembly),
-        at_(assembly) {}
+        at_(assembly) {
+    at_.note_places(assembly.components().size());
+  }
 
   /// Makes appointments for all meetings of a group with others from a time on, before the horizons of both.
   void find(ClockGroup& group, double time, MeetingQueue& queue);

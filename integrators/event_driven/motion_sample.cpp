@@ -2,6 +2,8 @@
 
 #include <carom/integrators/event_driven/motion_sample.h>
 
+#include <limits>
+
 namespace carom {
 
 MotionSample::MotionSample(const Assembly& assembly)
@@ -12,6 +14,10 @@ MotionSample::MotionSample(const Assembly& assembly)
     if (elements->books_external()) external.assign(state.v.size(), 0.0);
   }
   if (!dissipative.empty() || !external.empty()) all_causes_.assign(state.v.size(), 0.0);
+}
+
+void MotionSample::note_places(std::size_t components) {
+  evaluation.placed_at.assign(components, std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace carom

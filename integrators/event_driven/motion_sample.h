@@ -10,6 +10,7 @@
 #include <carom/core/joint_kind.h>
 #include <carom/core/state.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +25,9 @@ enum class Forces : std::uint8_t { without_contact, all };
 struct CAROM_API MotionSample {
   /// Memory for any group of a model.
   explicit MotionSample(const Assembly& assembly);
+  /// Notes from now on by component at which time its bodies were placed (Evaluation::placed_at). Needed
+  /// where bodies touch each other: then others than those of the group are looked at.
+  void note_places(std::size_t components);
 
   State state;                                ///< time and unknowns
   Evaluation evaluation;                      ///< positions and loads

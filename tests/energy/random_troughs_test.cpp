@@ -74,7 +74,7 @@ TEST_P(RandomTroughsLong, NoneEndsEarlyAndNothingIsShotAway) {
   constexpr double most_gained = 0.05;
   // Event-driven steps are as exact as their tolerances, whose errors add up: 1.1e-9 was seen.
   const double rounding = mode == "event_driven" ? 1e-8 : round_off;
-  // One in a hundred ends early, which fewer than all of the usual ones cannot tell.
+  // One in a thousand ends early, which fewer than all of the usual ones cannot tell.
   const SeedRange range = seeds_from(40000, 200, 5000, 200);
   int ended = 0;
   for (std::uint64_t seed = range.first; seed < range.last; ++seed) {
@@ -91,7 +91,7 @@ TEST_P(RandomTroughsLong, NoneEndsEarlyAndNothingIsShotAway) {
     const ContactCounts& counts = simulation.statistics();
     EXPECT_LT(counts.energy_gained + counts.lasting_gained, most_gained * energy);
   }
-  EXPECT_LE(100 * ended, range.count());  // jams without forces, which are named
+  EXPECT_LE(200 * ended, range.count());  // jams without forces, which are named
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, RandomTroughsLong,
