@@ -16,15 +16,18 @@ bool has_friction(const Constraint& constraint) {
 
 }  // namespace
 
-bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain) {
+bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain,
+                            SettlingLimit& limit) {
   capture_ = capture_speed(pairs, at);
   if (!list_touching(pairs, at)) return false;
   const double pull = largest_acceleration(touching_, at);
   if (!(pull > 0.0)) return false;
   // A contact that parts at the capture speed has come back by then.
   const double time = 2.0 * capture_ / pull;
+  if (!limit.allows(at.time, time)) return false;
   for (Constraint& contact : touching_) contact.of_joint.friction_bound *= time;  // of friction in a joint
   if (!solve_ahead(time, touching_, at, ahead_, problem_, chain) || !close(pairs, at)) return false;
+  limit.count(at.time, time);
   // What is left of sliding is slower than constraints can tell: it counts as stopped.
   for (const ActiveContact& held : held_) {
     if (held.sticks()) at.stopped.push_back(held.place);

@@ -18,10 +18,32 @@
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/slow_contacts.h>
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace carom {
+
+/// Settlings of a group that follow each other. Each is a way over the time that it looks ahead. Where
+/// constraints that are nearly dependent leave some of what it stops, another event may undo it at once, and
+/// the next one settle again, without end: after as many as would take that time, were each an eighth of it,
+/// what is slow is followed as it is until time has gone on.
+class SettlingLimit {
+public:
+  /// Remembers the settlings of another group too.
+  void take(const SettlingLimit& other) { taken_until_ = std::max(taken_until_, other.taken_until_); }
+  /// Whether there may be a settling at a time. \param ahead time that it looks ahead [s]
+  [[nodiscard]] bool allows(double time, double ahead) const { return taken_until_ < time + ahead; }
+  /// Counts one.
+  void count(double time, double ahead) {
+    constexpr double part = 0.125;
+    taken_until_ = std::max(taken_until_, time) + part * ahead;
+  }
+
+private:
+  double taken_until_ = -std::numeric_limits<double>::infinity();
+};
 
 /// Settles one island at a time. Keeps memory only.
 class CAROM_API ImpactSettling {
@@ -31,8 +53,9 @@ public:
   /// Constraint::OfJoint::length), where forces of contact do so, or turn them back, within the time in which
   /// what parts at that speed comes back. Books the energy as that of accumulations. True if velocities
   /// changed; the instant is up to date then, and contacts may approach each other. \param at brought to the
-  /// state after the impacts
-  [[nodiscard]] bool settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain);
+  /// state after the impacts \param limit of the group
+  [[nodiscard]] bool settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain,
+                            SettlingLimit& limit);
 
 private:
   [[nodiscard]] bool list_touching(std::span<const Index> pairs, const EventInstant& at);

@@ -70,10 +70,12 @@ bool ImpactStage::resolve(EventInstant& at) {
 }
 
 void ImpactStage::settle(EventInstant& at) {
+  SettlingLimit again;  // at one instant they end anyway
   for (int round = 0; round < most_closings_at_once; ++round) {
     bool any = false;
+    SettlingLimit& limit = round == 0 ? settlings_ : again;
     for (std::size_t island = 0; island < at.islands.size(); ++island) {
-      any = memory_->settling.settle(at.islands.pairs(island), at, *chain_) || any;
+      any = memory_->settling.settle(at.islands.pairs(island), at, *chain_, limit) || any;
     }
     if (!any || !resolve(at)) return;
     at.update();
@@ -81,7 +83,8 @@ void ImpactStage::settle(EventInstant& at) {
 }
 
 bool ImpactStage::settle(std::span<const Index> pairs, EventInstant& at) {
-  if (!memory_->settling.settle(pairs, at, *chain_)) return false;
+  SettlingLimit alone;
+  if (!memory_->settling.settle(pairs, at, *chain_, alone)) return false;
   if (resolve(at)) at.update();
   return true;
 }

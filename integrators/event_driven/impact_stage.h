@@ -65,9 +65,15 @@ public:
       : options_(&options), failure_(&failure), memory_(&memory), chain_(&chain) {}
 
   /// Begins with a new motion.
-  void start() { accumulation_.clear(); }
+  void start() {
+    accumulation_.clear();
+    settlings_ = {};
+  }
   /// Remembers the impacts of another group too.
-  void take(const ImpactStage& other) { accumulation_.take(other.accumulation_); }
+  void take(const ImpactStage& other) {
+    accumulation_.take(other.accumulation_);
+    settlings_.take(other.settlings_);
+  }
   /// Solves impacts until nothing approaches. True if there was one: velocities are those after it then, but
   /// loads and accelerations those before.
   [[nodiscard]] bool resolve(EventInstant& at);
@@ -101,6 +107,7 @@ private:
   ImpactMemory* memory_;
   SolverChain* chain_;
   Accumulation accumulation_;
+  SettlingLimit settlings_;
 };
 
 }  // namespace carom

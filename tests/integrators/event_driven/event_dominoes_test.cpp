@@ -80,7 +80,11 @@ TEST(EventDominoesLong, Twenty) {
 }
 
 // Groups that parted forgot at an instant which forces had come to their end there: events followed each
-// other at 1.8 s without end.
-TEST(EventDominoesLong, Thirty) { run({30, 0.2, 0.0}, 3.0); }
+// other at 1.8 s without end. With friction 0.4 contacts were settled again and again, and what was stopped
+// was undone by the next event.
+TEST(EventDominoesLong, Thirty) {
+  run({30, 0.2, 0.0}, 3.0);
+  run({30, 0.4, 0.1}, 3.0);
+}
 
 }  // namespace
