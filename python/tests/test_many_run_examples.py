@@ -1,11 +1,14 @@
 """The examples of many runs, with few of them."""
 
+import importlib.util
 import subprocess
 import sys
 
 import numpy
 import pytest
 from conftest import PYTHON
+
+from carom import EventDriven, EventKind, Simulation
 
 
 def run(name, folder, *words):
@@ -23,6 +26,64 @@ def test_one_impact_a_period_on_the_vibrating_table(tmp_path):
     assert (spread[numpy.isclose(rows[:, 0], 0.9)] < 1e-3).any()
     assert (spread[numpy.isclose(rows[:, 0], 1.4)] > 0.1).all()
     assert (tmp_path / "vibrating_table.png").stat().st_size > 10_000
+
+
+@pytest.fixture(scope="module")
+def basin():
+    """Example 14 as a module."""
+    spec = importlib.util.spec_from_file_location("basin", PYTHON / "examples" / "14_basin_of_attraction.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def shaken(basin, crest, periods):
+    """Impacts of the oscillator from a crest of the force on: times [s], and speeds before [m/s]; and how it ends."""
+    simulation = Simulation(basin.oscillator(*crest), EventDriven(interval=basin.PERIOD, relative_tolerance=1e-12))
+    simulation.run_until(periods * basin.PERIOD)
+    impacts = [event for event in simulation.events() if event.kind == EventKind.impact]
+    ends = int(basin.motions(*(numpy.array(value) for value in basin.last_impacts(simulation)[::2])))
+    return numpy.array([(event.time, event.motions[0].velocity_before[0]) for event in impacts]).reshape(-1, 2), ends
+
+
+def test_orbits_of_the_shaken_mass_are_those_of_the_closed_form(basin):
+    fast, slow = basin.orbits(2)
+    for number, crest in enumerate(fast.crests):
+        impacts, ends = shaken(basin, crest, 40)
+        # An impact in the period before the last crest of an orbit, then every second period.
+        times = fast.time + basin.PERIOD * (1 - number + 2 * numpy.arange(20))
+        numpy.testing.assert_allclose(impacts, numpy.column_stack([times, numpy.full(20, fast.speed)]), rtol=1e-8)
+        assert ends == 2 - number
+    # The other is not stable: errors become 3.2 times as large from impact to impact.
+    impacts, _ = shaken(basin, slow.crests[0], 8)
+    numpy.testing.assert_allclose(impacts[:4, 1], slow.speed, rtol=1e-8)
+    assert not basin.orbits(1)
+    # And the third never reaches the stop.
+    impacts, ends = shaken(basin, basin.FORCED, 40)
+    assert len(impacts) == 0 and ends == 0
+
+
+def test_basins_meet_at_the_orbit_that_is_not_stable(basin):
+    place, speed = basin.orbits(2)[1].crests[1]
+    ends = {shaken(basin, (place, speed + change), 80)[1] for change in (-0.02, 0.02)}
+    assert len(ends) == 2
+
+
+def test_a_map_of_basins(basin, tmp_path):
+    out = run("14_basin_of_attraction", tmp_path, "24")
+    assert "576 runs, 0 failed" in out
+    rows = numpy.loadtxt(tmp_path / "basin.csv", delimiter=",", skiprows=1)
+    counts = [int((rows[:, 2] == number).sum()) for number in range(4)]
+    assert min(counts[:3]) > 20 and counts[3] <= 3, counts
+    impacting = numpy.isin(rows[:, 2], (1, 2))
+    fast = basin.orbits(2)[0]
+    assert abs(rows[impacting, 4] - fast.speed).max() < 0.02
+    assert numpy.median(abs(rows[impacting, 4] - fast.speed)) < 1e-4
+    # Each start near a motion ends in it: the one without impacts, and both with them.
+    for motion, (place, speed) in enumerate([basin.FORCED, *reversed(fast.crests)]):
+        nearest = numpy.argmin(numpy.hypot(rows[:, 0] - place, rows[:, 1] - speed))
+        assert rows[nearest, 2] == motion
+    assert (tmp_path / "basin_of_attraction.png").stat().st_size > 10_000
 
 
 def test_throws_scatter_about_the_flashes(tmp_path):
