@@ -66,3 +66,17 @@ def nothing(simulation) -> float:
 def ragged(simulation) -> "list[float]":
     """An output whose length depends on the run."""
     return [1.0] * (1 + simulation.event_count())
+
+
+def be_another_version() -> None:
+    """Makes this process one of another version of carom."""
+    from carom.ensembles import task
+
+    task.__version__ = "0.0.9"
+
+
+def times_read() -> "tuple[int, ...]":
+    """How often this process had a task that it was sent, and how often it read one."""
+    from carom.ensembles.task import _unpacked
+
+    return tuple(_unpacked.cache_info())

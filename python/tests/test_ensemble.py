@@ -3,6 +3,7 @@
 import concurrent.futures
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -13,6 +14,7 @@ from pathlib import Path
 import numpy
 import pytest
 from ensemble_models import (
+    be_another_version,
     deadly,
     height,
     nothing,
@@ -21,6 +23,7 @@ from ensemble_models import (
     slow,
     stiff,
     thrown_ball,
+    times_read,
 )
 
 import carom
@@ -71,6 +74,28 @@ def test_every_engine_gives_the_same_rows(executor, expected):
             assert rows(carom.ensemble(thrown_ball(), GRID, executor=pool, **CALL)) == expected
     else:
         assert rows(carom.ensemble(thrown_ball(), GRID, executor=executor, **CALL)) == expected
+
+
+def test_processes_of_another_version_end_an_ensemble(tmp_path):
+    pytest.importorskip("h5py")
+    file = tmp_path / "sweep.h5"
+    both = f"makes runs has carom 0.0.9, .* sends them carom {re.escape(carom.__version__)}; allowed: one version"
+    with concurrent.futures.ProcessPoolExecutor(2, initializer=be_another_version) as pool:
+        with pytest.raises(ModelError, match=both):
+            carom.ensemble(thrown_ball(), GRID, executor=pool, file=file, **CALL)
+        assert not file.exists() and not (tmp_path / "sweep.h5.parts").exists()  # no row has failed for it
+        with pytest.raises(ModelError, match=both):
+            carom.ensemble(stiff, {"stiffness": [1.0]}, executor=pool, **CALL)  # of functions too
+        assert pool.submit(os.getpid).result() != os.getpid()  # its processes live
+
+
+def test_a_process_reads_a_model_once():
+    with concurrent.futures.ProcessPoolExecutor(1) as pool:
+        carom.ensemble(thrown_ball(), {"body.ball.spin": numpy.linspace(0.0, 1.0, 2000)}, executor=pool, **CALL)
+        had, read, *_ = pool.submit(times_read).result()
+        assert read == 1 and had >= 2
+        carom.ensemble(thrown_ball(friction=0.1), {"body.ball.spin": [1.0]}, executor=pool, **CALL)
+        assert pool.submit(times_read).result()[1] == 2
 
 
 def test_dask_gives_the_same_rows(expected):
