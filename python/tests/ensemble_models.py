@@ -5,6 +5,8 @@ import signal
 import time
 from pathlib import Path
 
+import numpy
+
 from carom import Surface, System
 from carom.planar import Disc, Gravity, HalfPlane, Particle, RigidBody, SpringDamper, disc
 
@@ -80,3 +82,8 @@ def times_read() -> "tuple[int, ...]":
     from carom.ensembles.task import _unpacked
 
     return tuple(_unpacked.cache_info())
+
+
+def wide(simulation) -> "numpy.ndarray":
+    """An output of 100 numbers, 800 bytes."""
+    return numpy.full(100, simulation.time())

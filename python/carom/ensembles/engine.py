@@ -18,7 +18,7 @@ from .task import Failure, Results, Task, run_columns
 
 _BATCH_TIME = 0.2  # of a batch [s]: a message costs a millisecond
 _GRACE = 1.0  # for batches that are under way when the user ends it [s]
-_MOST_RUNS = 20000  # in a batch
+_MOST_RUNS, _MOST_BYTES = 20000, 2e6  # in a batch, of its results
 _GROWTH = 8  # of batches, from one to the next, until their time is known
 
 
@@ -141,7 +141,8 @@ class Engine:
         before = self._seconds_of_run
         self._seconds_of_run = of_run if before is None else 0.8 * before + 0.2 * of_run
         wanted = int(_BATCH_TIME / self._seconds_of_run)
-        self._size = max(1, min(wanted, _GROWTH * self._size, _MOST_RUNS))
+        of_row = max(sum(column.nbytes for column in rows.values) / len(rows.runs), 1.0)
+        self._size = max(1, min(wanted, _GROWTH * self._size, _MOST_RUNS, int(_MOST_BYTES / of_row)))
 
     def _taken(
         self, future: Any, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]
