@@ -95,6 +95,17 @@ def test_throws_scatter_about_the_flashes(tmp_path):
     # Before the first impact the speeds alone scatter, by 3 %: v t s within four errors of its estimate.
     expected = 0.03 * 5.444387434554974 * 0.0309
     assert abs(flashes[:, 1, 0].std() - expected) < 4.0 * expected / numpy.sqrt(2.0 * 200)
+    for e_t in ("0.91", "0.68"):
+        at = numpy.loadtxt(tmp_path / f"stated_{e_t}.csv", delimiter=",", skiprows=1)
+        flashes = numpy.loadtxt(tmp_path / f"flashes_{e_t}.csv", delimiter=",", skiprows=1).reshape(200, 12, 2)
+        assert at[0].tolist() == [0.0, 0.25] and (at[:, 1] > 0.0131 - 2e-3).all() and (at[:, 1] < 0.530 - 0.0131 + 2e-3).all()
+        off = numpy.linalg.norm(at - flashes.mean(axis=0), axis=1)
+        # A cloud is about the place without errors, but for what is not linear in them.
+        assert (off[1:] < numpy.sqrt(flashes.var(axis=0).sum(axis=1))[1:]).all()
+        # Before the first impact it is a parabola, but for steps of h: v h t.
+        t = 0.0309
+        start = [5.444387434554974 if e_t == "0.91" else 6.18975, -5.0 - 0.5 * 9.81 * t]
+        assert numpy.linalg.norm(at[1] - numpy.array([0.0, 0.25]) - numpy.array(start) * t) < 1e-3
     assert (tmp_path / "thrown_between_tables.png").stat().st_size > 10_000
 
 
