@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy
@@ -102,6 +103,39 @@ def test_dask_gives_the_same_rows(expected):
         with distributed.Client(cluster) as client:
             made = carom.ensemble(thrown_ball(), GRID, executor=client.get_executor(), **CALL)
     assert rows(made) == expected
+
+
+def test_as_many_batches_are_under_way_as_there_are_workers():
+    """Also of Dask, whose workers are not those of this machine, and come and go."""
+
+    class Counting:
+        """Counts batches that are under way, which take 5 ms more."""
+
+        def __init__(self, pool):
+            self.pool, self.running, self.most = pool, 0, 0
+
+        def submit(self, *call):
+            self.running += 1
+            self.most = max(self.most, self.running)
+            return self.pool.submit(self.later, *call)
+
+        def later(self, function, *arguments):
+            time.sleep(5e-3)
+            self.running -= 1
+            return function(*arguments)
+
+    class Client:
+        workers = {"a": 3, "b": 4}
+
+        def ncores(self):
+            return self.workers
+
+    for client, most in ((None, 42), (Client(), 16)):
+        with concurrent.futures.ThreadPoolExecutor(1) as pool:
+            executor = Counting(pool)
+            executor._max_workers, executor._client = 20, client
+            made = carom.ensemble(thrown_ball(), {"body.ball.spin": numpy.arange(100.0)}, executor=executor, **CALL)
+        assert not made.missing and most - 2 <= executor.most <= most, executor.most
 
 
 def test_dask_goes_on_without_a_worker(tmp_path):
