@@ -1,6 +1,8 @@
 """The examples of many runs, with few of them."""
 
 import importlib.util
+import os
+import shutil
 import subprocess
 import sys
 
@@ -8,6 +10,7 @@ import numpy
 import pytest
 from conftest import PYTHON
 
+import carom
 from carom import EventDriven, EventKind, Simulation
 
 
@@ -115,3 +118,65 @@ def test_identification_finds_the_truth(tmp_path):
     counts = [int(line.split(" in ")[1].split()[0]) for line in out.splitlines() if "within two" in line]
     assert len(counts) == 3 and min(counts) >= 16  # 19 of 20 expected; fewer than 16 once in 500 times
     assert (tmp_path / "fit.png").stat().st_size > 5_000
+
+
+SLURM = PYTHON / "examples" / "slurm"
+SCENE = PYTHON / "scenes" / "ball_between_tables.json"
+VARY = "surface.lower table.normal_restitution"
+
+
+def test_the_batch_script_sweeps_by_mpi(tmp_path):
+    """With an `srun` that starts three ranks of this machine."""
+    pytest.importorskip("mpi4py")
+    pytest.importorskip("h5py")
+    mpiexec = shutil.which("mpiexec") or pytest.skip("there is no mpiexec")
+    said = subprocess.run([mpiexec, "--version"], capture_output=True, text=True).stdout.lower()
+    more = "--oversubscribe --allow-run-as-root" if "open" in said else ""
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    for name, text in (("srun", f'exec {mpiexec} -n 3 {more} "$@"'), ("python", f'exec {sys.executable} "$@"')):
+        (tools / name).write_text(f"#!/bin/sh\n{text}\n")
+        (tools / name).chmod(0o755)
+    file = tmp_path / "rows.h5"
+    words = [SCENE, "--vary", f"{VARY}=0.5:1.0:30", "--output", "body.ball.position", "--file", file]
+    environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
+    out = subprocess.run(
+        [SLURM / "sweep_mpi.sh", *map(str, words)], capture_output=True, text=True, env=environment, timeout=120
+    )
+    assert out.returncode == 0 and "30 runs, 0 failed" in out.stdout, out.stderr
+    call = {"outputs": "body.ball.position", "executor": carom.SerialExecutor()}
+    grid = {VARY: numpy.linspace(0.5, 1.0, 30)}
+    there = carom.ensemble(SCENE, grid, file=file, **call)["body.ball.position"]
+    assert (there == carom.ensemble(SCENE, grid, **call)["body.ball.position"]).all()
+
+
+FAKE_CLUSTER = """
+from dask.distributed import LocalCluster
+
+class SLURMCluster(LocalCluster):
+    def __init__(self, cores, processes, memory, walltime):
+        assert cores == processes
+        super().__init__(n_workers=2, threads_per_worker=1, dashboard_address=None)
+
+    def scale(self, jobs):
+        print(f"asked for {jobs} jobs")
+        super().scale(min(jobs, 2))  # none at its end
+"""
+
+
+def test_the_program_for_dask_jobqueue_sweeps(tmp_path):
+    """With a cluster of this machine in the place of Slurm's."""
+    pytest.importorskip("dask.distributed")
+    pytest.importorskip("h5py")
+    (tmp_path / "dask_jobqueue.py").write_text(FAKE_CLUSTER)
+    file = tmp_path / "rows.h5"
+    out = subprocess.run(
+        [sys.executable, str(SLURM / "sweep_dask.py"), str(SCENE), str(file)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        timeout=120,
+    )
+    assert out.returncode == 0, out.stderr
+    assert "asked for 32 jobs" in out.stdout and "10201 of" in out.stdout and "; 0 failed" in out.stdout
+    assert file.exists()

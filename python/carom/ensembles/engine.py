@@ -20,10 +20,10 @@ import numpy
 from .points import Points
 from .task import Failure, Results, Task, message_of, run_message
 
-_BATCH_TIME = 0.2  # of a batch [s]: a message costs a millisecond
+_BATCH_TIME, _OF_WORKER = 0.2, 4e-3  # of a batch, and for each worker, if that is more [s]: a message costs two milliseconds
 _GRACE = 1.0  # for batches that are under way when the user ends it [s]
 _MOST_RUNS, _MOST_BYTES = 20000, 2e6  # in a batch, of its results
-_BYTES_SENT = 64e6  # of results of all batches that are under way
+_BYTES_SENT = 256e6  # of results of all batches that are under way
 _ASKS = 1.0  # from one question to the next, how many workers Dask has [s]
 _GROWTH = 8  # of batches, from one to the next, until their time is known
 
@@ -46,6 +46,13 @@ class SerialExecutor:
 def _ignore_interrupts() -> None:
     """Ctrl-C reaches all processes of a terminal; the one that has the others ends them."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def runs_of_batch(seconds: float, row: float, workers: int) -> int:
+    """How many runs are sent together. seconds: of a run. row: bytes of its results."""
+    by_time = max(_BATCH_TIME, _OF_WORKER * workers) / seconds
+    by_size = min(_MOST_BYTES, _BYTES_SENT / (2 * workers + 2)) / max(row, 1.0)
+    return max(1, int(min(by_time, by_size, _MOST_RUNS)))
 
 
 class Engine:
@@ -166,10 +173,8 @@ class Engine:
         # Runs differ; of the slower ones a batch may last longer.
         before = self._seconds_of_run
         self._seconds_of_run = of_run if before is None else 0.8 * before + 0.2 * of_run
-        wanted = int(_BATCH_TIME / self._seconds_of_run)
-        of_row = max(sum(column.nbytes for column in rows.values) / len(rows.runs), 1.0)
-        most_bytes = min(_MOST_BYTES, _BYTES_SENT / (2 * self._workers + 2))
-        self._size = max(1, min(wanted, _GROWTH * self._size, _MOST_RUNS, int(most_bytes / of_row)))
+        of_row = sum(column.nbytes for column in rows.values) / len(rows.runs)
+        self._size = min(runs_of_batch(self._seconds_of_run, of_row, self._workers), _GROWTH * self._size)
 
     def _taken(
         self, future: Any, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]
