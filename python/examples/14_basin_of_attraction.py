@@ -144,9 +144,9 @@ def draw(folder: pathlib.Path, found: numpy.ndarray[Any, Any], fast: Orbit, slow
 
     figure, axes = pyplot.subplots(figsize=(8, 5.2), layout="constrained")
     extent = (*PLACES, *SPEEDS)
-    chosen = {"cmap": colors.ListedColormap(COLOURS), "vmin": -0.5, "vmax": 3.5}
+    chosen: dict[str, Any] = {"cmap": colors.ListedColormap(COLOURS), "vmin": -0.5, "vmax": 3.5}
     axes.imshow(found, origin="lower", extent=extent, aspect="auto", interpolation="nearest", **chosen)
-    style = {"markeredgecolor": "black", "markersize": 7, "linestyle": "none"}
+    style: dict[str, Any] = {"markeredgecolor": "black", "markersize": 7, "linestyle": "none"}
     axes.plot(*zip(FORCED, *fast.crests), "o", color="white", label="these motions, in closed form", **style)
     axes.plot(*zip(*slow.crests), "X", color="#e0a030", label="that with impacts that is not stable", **style)
     shown = [number for number in range(4) if (found == number).any()]

@@ -56,7 +56,8 @@ def stated(e_t: float, speed: float) -> numpy.ndarray[Any, Any]:
         outputs={"flashes": Trace("body.ball.position", FLASHES)},
         executor=SerialExecutor(),
     )
-    return runs["flashes"][0]
+    flashes: numpy.ndarray[Any, Any] = runs["flashes"][0]
+    return flashes
 
 
 def draw(axes: Any, flashes: numpy.ndarray[Any, Any], at: numpy.ndarray[Any, Any]) -> None:

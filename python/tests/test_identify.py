@@ -1,10 +1,11 @@
 """Parameters from measurements: closed forms of gradients through impacts, made-up noise, what cannot be told apart."""
 
+import concurrent.futures
 import math
 
 import numpy
 import pytest
-from ensemble_models import thrown_ball
+from ensemble_models import be_another_version, thrown_ball
 
 import carom
 from carom import AtImpact, EventDriven, Free, Measured, MeasuredImpacts, ModelError, Simulation, Surface, System, TimeStepping
@@ -259,6 +260,12 @@ def test_processes_give_the_same_result():
     one, two = (carom.identify(tables, start, values, executor=executor) for executor in (None, 2))
     assert one.values == two.values
     assert (one.jacobian == two.jacobian).all()
+
+
+def test_processes_of_another_version_are_an_error():
+    with concurrent.futures.ProcessPoolExecutor(1, initializer=be_another_version) as pool:
+        with pytest.raises(ModelError, match=r"carom 0\.0\.9.*allowed: one version"):
+            carom.identify(thrown_ball, {"friction": 0.5}, [Measured("body.ball.angle", [0.1], [0.4])], executor=pool)
 
 
 def test_a_picture(tmp_path):
