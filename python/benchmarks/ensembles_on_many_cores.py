@@ -1,10 +1,11 @@
 """What an ensemble can do on many cores: a model of times that are measured here, and how it fits one and two processes.
 
     python python/benchmarks/ensembles_on_many_cores.py [--quick]
+    mpiexec -n 3 python -m mpi4py.futures python/benchmarks/ensembles_on_many_cores.py --mpi
 
 Measured: seconds of a run alone, and in a process of an ensemble (with its batch, its outputs and its message); processor
-time of the program that sends batches and gets rows (the driver), by batch and by row, from batches of two sizes, with
-processes of this machine and, where it is installed, with Dask, whose scheduler is in the driver here. From them: how
+time of the program that sends batches and gets rows (the driver), by batch and by row, with processes of this machine
+and, where it is installed, with Dask, whose scheduler is in the driver here; with --mpi with MPI instead. From them: how
 many times as fast as one process P of them are: min(P, time of a run / time of the driver for a run), where the driver
 spends on a run its time for a row, and its time for a batch by the runs of a batch. The end of an ensemble, where some
 wait for the last batches, is not in it.
@@ -114,26 +115,47 @@ def speed_up(seconds: float, cores: int, batch: float, row: float) -> float:
     return min(cores, seconds / of_driver)
 
 
-def main(quick: bool) -> None:
-    rows = 20_000 if quick else 100_000
-    for count in (1, 200, 5000):
-        sent, back = sizes(count)
-        print(f"a batch of {count} runs: {sent} bytes sent, {back} back")
+def print_speed_ups(name: str, times: "list[float]", driver: "tuple[float, float]") -> None:
+    batch, row = driver
+    print(f"driver, {name}: {batch * 1e6:.0f} us a batch and {row * 1e6:.2f} us a row")
+    print(f"times as fast as one process, by {name}, with " + ", ".join(map(str, CORES)) + " of them")
+    for seconds in times:
+        at = [math.floor(speed_up(seconds, cores, batch, row)) for cores in CORES]
+        print(f"  {seconds:<8.3g} " + " ".join(f"{times:6d}" for times in at))
+
+
+def of_mpi(rows: int) -> None:
+    """In rank 0 of several."""
+    from mpi4py.futures import MPIPoolExecutor
+
+    with MPIPoolExecutor() as pool:
+        made([0.0] * 1000, 0.01, pool)
+        print_speed_ups("MPI", list(TIMES), of_driver(pool, rows))
+
+
+def drivers_here(rows: int) -> "dict[str, tuple[float, float]]":
+    """Seconds of the driver by engine."""
     with concurrent.futures.ProcessPoolExecutor(2) as pool:
         made([0.0] * 1000, 0.01, pool)  # processes have begun
         drivers = {"processes": of_driver(pool, rows)}
     try:
         from dask.distributed import Client, LocalCluster
     except ImportError:
-        pass
-    else:
-        with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
-            made([0.0] * 1000, 0.01, client.get_executor())
-            drivers["Dask"] = of_driver(client.get_executor(), rows)
-    for name, (batch, row) in drivers.items():
-        print(f"driver, {name}: {batch * 1e6:.0f} us a batch and {row * 1e6:.2f} us a row")
-    print("seconds of a run     alone        one process  two          model of two")
-    predicted = {}
+        return drivers
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        made([0.0] * 1000, 0.01, client.get_executor())
+        drivers["Dask"] = of_driver(client.get_executor(), rows)
+    return drivers
+
+
+def main(quick: bool) -> None:
+    rows = 20_000 if quick else 100_000
+    for count in (1, 200, 5000):
+        sent, back = sizes(count)
+        print(f"a batch of {count} runs: {sent} bytes sent, {back} back")
+    drivers = drivers_here(rows)
+    print("seconds of a run     alone  one process          two  model of two")
+    times = []
     for seconds in TIMES:
         until = end_for(seconds)
         count = max(8 if quick else 16, min(rows, int((1.0 if quick else 4.0) / seconds)))
@@ -144,17 +166,15 @@ def main(quick: bool) -> None:
             with concurrent.futures.ProcessPoolExecutor(processes) as pool:
                 made([0.0] * 200, 0.01, pool)
                 measured.append(min(made(values, until, pool)[0] for _ in range(3)) / count)
-        of_run = measured[0]
-        predicted[seconds] = {
-            name: [speed_up(of_run, cores, *driver) for cores in CORES] for name, driver in drivers.items()
-        }
-        model = of_run / speed_up(of_run, 2, *drivers["processes"])
-        print(f"{seconds:<15g} {alone:12.3g} {of_run:12.3g} {measured[1]:12.3g} {model:12.3g}")
-    for name in drivers:
-        print(f"times as fast as one process, by {name}, with " + ", ".join(map(str, CORES)) + " of them")
-        for seconds, at in ((seconds, of[name]) for seconds, of in predicted.items()):
-            print(f"  {seconds:<8g} " + " ".join(f"{math.floor(times):6d}" for times in at))
+        times.append(measured[0])
+        model = measured[0] / speed_up(measured[0], 2, *drivers["processes"])
+        print(f"{seconds:<13g} {alone:12.3g} {measured[0]:12.3g} {measured[1]:12.3g}  {model:12.3g}")
+    for name, driver in drivers.items():
+        print_speed_ups(name, times, driver)
 
 
 if __name__ == "__main__":
-    main("--quick" in sys.argv)
+    if "--mpi" in sys.argv:
+        of_mpi(100_000)
+    else:
+        main("--quick" in sys.argv)
