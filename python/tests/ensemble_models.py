@@ -87,3 +87,13 @@ def times_read() -> "tuple[int, ...]":
 def wide(simulation) -> "numpy.ndarray":
     """An output of 100 numbers, 800 bytes."""
     return numpy.full(100, simulation.time())
+
+
+def cube(simulation) -> "numpy.ndarray":
+    """An output of three axes."""
+    return simulation.time() * numpy.arange(24.0).reshape(2, 3, 4)
+
+
+def nothing_to_tell(simulation) -> "list[float]":
+    """An output without numbers."""
+    return []

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import math
 import os
 import shutil
 import time
@@ -71,9 +72,8 @@ class Parquet:
             return column
         made = self._arrow.array(numpy.ascontiguousarray(column).ravel())
         for axis in range(column.ndim - 1, 0, -1):
-            length = column.shape[axis]
-            offsets = numpy.arange(0, len(made) + 1, length, dtype=numpy.int32) if length else [0] * (len(column) + 1)
-            made = self._arrow.ListArray.from_arrays(offsets, made)
+            offsets = numpy.arange(math.prod(column.shape[:axis]) + 1, dtype=numpy.int32) * column.shape[axis]
+            made = self._arrow.ListArray.from_arrays(offsets.astype(numpy.int32), made)
         return made
 
     def _values(self, array: Any) -> Any:
