@@ -86,8 +86,8 @@ class Engine:
         try:
             while True:
                 # Of runs that ended a process it shows which did where each is alone.
-                most = 1 if waiting else self._most_sent()
-                while len(sent) < most:
+                most = self._most_sent()
+                while len(sent) < (1 if waiting else most):
                     batch = waiting.popleft() if waiting else self._next(runs)
                     if not batch:
                         break
