@@ -20,7 +20,7 @@ import numpy
 import carom
 from carom import EventDriven, SerialExecutor, Simulation
 from carom.ensembles.outputs import Outputs
-from carom.ensembles.task import Task, run_columns
+from carom.ensembles.task import Task, message_of, run_message
 
 SCENE = Path(__file__).parents[1] / "scenes" / "ball_between_tables.json"
 CALL = {"mode": EventDriven(), "until": 1.0, "outputs": ["energy.total", "body.ball.position"]}
@@ -48,9 +48,8 @@ def in_ensemble(values, executor, file=None) -> float:
 def message_bytes(count: int) -> "tuple[int, int]":
     """Of what is sent for so many runs, and of what comes back."""
     task = Task(carom.load_scene(SCENE), [PATH], CALL["mode"], 1.0, Outputs(CALL["outputs"]), 0)
-    points = [(0.9,)] * count
-    rows = run_columns(task, list(range(count)), points)
-    return len(pickle.dumps((task, list(range(count)), points))), len(pickle.dumps(rows))
+    message = message_of(list(range(count)), [(0.9,)] * count)
+    return len(pickle.dumps((task, message))), len(pickle.dumps(run_message(task, message)))
 
 
 def main(count: int) -> None:

@@ -60,9 +60,9 @@ def ensemble(
     store, done = None, None
     if file is not None:
         store = Store(file, {**task.fingerprint(), "parameters": points.fingerprint()})
-        done = find_rows(store.tables(), len(points))
         if store.complete:
             return Runs(task, points, None, store, False)
+        done = find_rows(store.tables(), len(points))
     _demand_start(task, points)
     engine = Engine(executor, task, points)
     table = Table(len(points), compiled.names) if store is None else None

@@ -168,18 +168,17 @@ def _result(
 ) -> Identified:
     """Errors and correlations from the Jacobian."""
     notes = list(notes)
-    # By its singular values: a direction that nothing measures has no error, and is told.
-    _, singular, directions = numpy.linalg.svd(jacobian / _lengths(jacobian), full_matrices=False)
-    for value, direction in zip(singular, directions):
-        if value <= 1e-8 * singular[0]:
-            involved = ", ".join(name for name, part in zip(names, direction) if abs(part) > 0.1)
-            notes.append(f"the measurements do not say what {involved} is")
-    inverse = numpy.linalg.pinv(jacobian.T @ jacobian, rcond=1e-16, hermitian=True)
+    inverse, unknown = _inverse(jacobian)
+    for direction in unknown:
+        involved = ", ".join(name for name, part in zip(names, direction) if abs(part) > 0.1)
+        notes.append(f"the measurements do not say what {involved} is")
     errors = numpy.sqrt(numpy.diag(inverse))
-    unseen = _lengths(jacobian, 0.0) == 0.0
-    errors[unseen] = numpy.inf
     with numpy.errstate(invalid="ignore", divide="ignore"):
         correlation = inverse / numpy.outer(errors, errors)
+    for direction in unknown:
+        errors[abs(direction) > 1e-6] = numpy.inf
+    unsaid = ~numpy.isfinite(errors)
+    correlation[unsaid] = correlation[:, unsaid] = 0.0
     correlation[~numpy.isfinite(correlation)] = 0.0
     numpy.fill_diagonal(correlation, 1.0)
     for i, one in enumerate(names):
@@ -201,8 +200,16 @@ def _result(
     )
 
 
-def _lengths(jacobian: numpy.ndarray, least: float = 1.0) -> numpy.ndarray:
-    """Lengths of the columns; `least` for those of none."""
+def _inverse(jacobian: numpy.ndarray) -> tuple[numpy.ndarray, list[numpy.ndarray]]:
+    """Covariance of the parameters, by the singular values of the Jacobian: of the directions that the residuals tell. The
+    others are listed, in columns of length 1.
+    """
     lengths = numpy.linalg.norm(jacobian, axis=0)
-    return numpy.where(lengths > 0.0, lengths, least)
-
+    lengths[lengths == 0.0] = 1.0
+    missing = max(0, jacobian.shape[1] - jacobian.shape[0])  # residuals, where there are fewer than parameters
+    _, singular, directions = numpy.linalg.svd(
+        numpy.vstack([jacobian / lengths, numpy.zeros((missing, len(lengths)))]), full_matrices=False
+    )
+    told = singular > 1e-8 * singular[0]
+    scaled = directions[told] / singular[told, None] / lengths
+    return scaled.T @ scaled, list(directions[~told])

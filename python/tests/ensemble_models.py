@@ -5,6 +5,8 @@ import signal
 import time
 from pathlib import Path
 
+import numpy
+
 from carom import Surface, System
 from carom.planar import Disc, Gravity, HalfPlane, Particle, RigidBody, SpringDamper, disc
 
@@ -66,3 +68,32 @@ def nothing(simulation) -> float:
 def ragged(simulation) -> "list[float]":
     """An output whose length depends on the run."""
     return [1.0] * (1 + simulation.event_count())
+
+
+def be_another_version() -> None:
+    """Makes this process one of another version of carom."""
+    from carom.ensembles import task
+
+    task.__version__ = "0.0.9"
+
+
+def times_read() -> "tuple[int, ...]":
+    """How often this process had a task that it was sent, and how often it read one."""
+    from carom.ensembles.task import _unpacked
+
+    return tuple(_unpacked.cache_info())
+
+
+def wide(simulation) -> "numpy.ndarray":
+    """An output of 100 numbers, 800 bytes."""
+    return numpy.full(100, simulation.time())
+
+
+def cube(simulation) -> "numpy.ndarray":
+    """An output of three axes."""
+    return simulation.time() * numpy.arange(24.0).reshape(2, 3, 4)
+
+
+def nothing_to_tell(simulation) -> "list[float]":
+    """An output without numbers."""
+    return []

@@ -1,8 +1,8 @@
-"""Many runs: the same rows from every engine, rows that fail, files that go on."""
+"""Many runs: the same rows from every engine, rows that fail, calls that are wrong."""
 
 import concurrent.futures
-import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy
 import pytest
 from ensemble_models import (
+    be_another_version,
     deadly,
     height,
     nothing,
@@ -21,6 +22,7 @@ from ensemble_models import (
     slow,
     stiff,
     thrown_ball,
+    times_read,
 )
 
 import carom
@@ -73,12 +75,67 @@ def test_every_engine_gives_the_same_rows(executor, expected):
         assert rows(carom.ensemble(thrown_ball(), GRID, executor=executor, **CALL)) == expected
 
 
+def test_processes_of_another_version_end_an_ensemble(tmp_path):
+    pytest.importorskip("h5py")
+    file = tmp_path / "sweep.h5"
+    both = f"makes runs has carom 0.0.9, .* sends them carom {re.escape(carom.__version__)}; allowed: one version"
+    with concurrent.futures.ProcessPoolExecutor(2, initializer=be_another_version) as pool:
+        with pytest.raises(ModelError, match=both):
+            carom.ensemble(thrown_ball(), GRID, executor=pool, file=file, **CALL)
+        assert not file.exists() and not (tmp_path / "sweep.h5.parts").exists()  # no row has failed for it
+        with pytest.raises(ModelError, match=both):
+            carom.ensemble(stiff, {"stiffness": [1.0]}, executor=pool, **CALL)  # of functions too
+        assert pool.submit(os.getpid).result() != os.getpid()  # its processes live
+
+
+def test_a_process_reads_a_model_once():
+    with concurrent.futures.ProcessPoolExecutor(1) as pool:
+        carom.ensemble(thrown_ball(), {"body.ball.spin": numpy.linspace(0.0, 1.0, 2000)}, executor=pool, **CALL)
+        had, read, *_ = pool.submit(times_read).result()
+        assert read == 1 and had >= 2
+        carom.ensemble(thrown_ball(friction=0.1), {"body.ball.spin": [1.0]}, executor=pool, **CALL)
+        assert pool.submit(times_read).result()[1] == 2
+
+
 def test_dask_gives_the_same_rows(expected):
     distributed = pytest.importorskip("dask.distributed")
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         with distributed.Client(cluster) as client:
             made = carom.ensemble(thrown_ball(), GRID, executor=client.get_executor(), **CALL)
     assert rows(made) == expected
+
+
+def test_as_many_batches_are_under_way_as_there_are_workers():
+    """Also of Dask, whose workers are not those of this machine, and come and go."""
+
+    class Counting:
+        """Counts batches that are under way, which take 5 ms more."""
+
+        def __init__(self, pool):
+            self.pool, self.running, self.most = pool, 0, 0
+
+        def submit(self, *call):
+            self.running += 1
+            self.most = max(self.most, self.running)
+            return self.pool.submit(self.later, *call)
+
+        def later(self, function, *arguments):
+            time.sleep(5e-3)
+            self.running -= 1
+            return function(*arguments)
+
+    class Client:
+        workers = {"a": 3, "b": 4}
+
+        def ncores(self):
+            return self.workers
+
+    for client, most in ((None, 42), (Client(), 16)):
+        with concurrent.futures.ThreadPoolExecutor(1) as pool:
+            executor = Counting(pool)
+            executor._max_workers, executor._client = 20, client
+            made = carom.ensemble(thrown_ball(), {"body.ball.spin": numpy.arange(100.0)}, executor=executor, **CALL)
+        assert not made.missing and most - 2 <= executor.most <= most, executor.most
 
 
 def test_dask_goes_on_without_a_worker(tmp_path):
@@ -245,132 +302,6 @@ def test_wrong_calls_are_refused():
         carom.ensemble(thrown_ball(), {"body.ball.spin": [1.0]}, file="sweep.txt", **call)
     with pytest.raises(FileError, match="no folder"):
         carom.ensemble(thrown_ball(), {"body.ball.spin": [1.0]}, file="nowhere/sweep.h5", **call)
-
-
-FORMATS = [".h5", ".parquet"]
-
-
-def demand(format_):
-    pytest.importorskip("h5py" if format_ == ".h5" else "pyarrow")
-
-
-@pytest.mark.parametrize("format_", FORMATS)
-def test_files_hold_the_rows(format_, tmp_path, expected):
-    demand(format_)
-    file = tmp_path / f"sweep{format_}"
-    assert rows(carom.ensemble(thrown_ball(), GRID, executor=2, file=file, **CALL)) == expected
-    assert [entry.name for entry in tmp_path.iterdir()] == [file.name]
-    # Nothing is run again.
-    again = carom.ensemble(thrown_ball(), GRID, executor=None, file=file, **CALL)
-    assert rows(again) == expected
-
-
-@pytest.mark.parametrize("format_", FORMATS)
-def test_files_of_another_ensemble_are_refused(format_, tmp_path):
-    demand(format_)
-    file = tmp_path / f"sweep{format_}"
-    grid = {"body.ball.spin": [1.0, 2.0]}
-    carom.ensemble(thrown_ball(), grid, executor=1, file=file, **CALL)
-    others = {
-        "parameters": (thrown_ball(), {"body.ball.spin": [1.0, 3.0]}, CALL),
-        "model": (thrown_ball(friction=0.4), grid, CALL),
-        "mode and end": (thrown_ball(), grid, {**CALL, "until": 1.1}),
-        "outputs": (thrown_ball(), grid, {**CALL, "outputs": "time"}),
-        "seed": (thrown_ball(), grid, {**CALL, "seed": 1}),
-    }
-    before = file.read_bytes()
-    for what, (model, parameters, call) in others.items():
-        with pytest.raises(ModelError, match=f"another ensemble.*{what}"):
-            carom.ensemble(model, parameters, executor=1, file=file, **call)
-    assert file.read_bytes() == before
-
-
-DRIVER = """
-import json, sys
-sys.path.insert(0, sys.argv[1])
-import numpy, carom
-from ensemble_models import slow
-if __name__ == "__main__":
-    parameters = {"restitution": numpy.linspace(0.1, 0.9, 300).tolist(), "folder": [sys.argv[3]]}
-    runs = carom.ensemble(slow, parameters, mode=carom.EventDriven(), until=0.5, executor=2, file=sys.argv[2],
-                          outputs=["energy.total", "body.ball.position"])
-    print(json.dumps([runs[name].tolist() for name in ("energy.total", "body.ball.position")]), runs.interrupted)
-"""
-
-
-def start(tmp_path, file):
-    marks = tmp_path / "marks"
-    marks.mkdir(exist_ok=True)
-    words = [sys.executable, "-c", DRIVER, str(Path(__file__).parent), str(file), str(marks)]
-    return subprocess.Popen(words, stdout=subprocess.PIPE, text=True, start_new_session=True)
-
-
-@pytest.mark.parametrize("format_", FORMATS)
-def test_a_killed_driver_goes_on(format_, tmp_path):
-    demand(format_)
-    file = tmp_path / f"sweep{format_}"
-    random = numpy.random.default_rng(5)
-    for _ in range(5):
-        driver = start(tmp_path, file)
-        time.sleep(random.uniform(0.4, 2.5))
-        os.killpg(driver.pid, signal.SIGKILL)
-        driver.communicate()
-    driver = start(tmp_path, file)
-    text, interrupted = driver.communicate()[0].rsplit(" ", 1)
-    assert interrupted.strip() == "False"
-    values = numpy.linspace(0.1, 0.9, 300).tolist()
-    (tmp_path / "other").mkdir()
-    expected = carom.ensemble(
-        slow,
-        {"restitution": values, "folder": [str(tmp_path / "other")]},
-        mode=EventDriven(),
-        until=0.5,
-        executor=SerialExecutor(),
-        outputs=["energy.total", "body.ball.position"],
-    )
-    assert json.loads(text) == [
-        expected[name].tolist() for name in ("energy.total", "body.ball.position")
-    ]
-    assert not (tmp_path / f"sweep{format_}.parts").exists()
-
-
-def test_ctrl_c_keeps_what_is_there(tmp_path):
-    pytest.importorskip("h5py")
-    file = tmp_path / "sweep.h5"
-    driver = start(tmp_path, file)
-    marks = tmp_path / "marks"
-    while len(list(marks.iterdir())) < 40:
-        time.sleep(0.05)
-    os.killpg(driver.pid, signal.SIGINT)
-    begun = time.monotonic()
-    text, interrupted = driver.communicate()[0].rsplit(" ", 1)
-    assert time.monotonic() - begun < 5.0
-    assert interrupted.strip() == "True"
-    energies = json.loads(text.replace("NaN", "null"))[0]
-    there = sum(energy is not None for energy in energies)
-    assert 0 < there < 300
-    before = len(list(marks.iterdir()))
-    assert start(tmp_path, file).communicate()[0].endswith("False\n")
-    # The first model is made once more, to find what is wrong with all of them.
-    assert len(list(marks.iterdir())) - before <= 300 - there + 1
-
-
-def test_a_full_disk_is_an_error_and_nothing_is_lost(tmp_path, monkeypatch):
-    pytest.importorskip("h5py")
-    from carom.ensembles import store
-
-    file = tmp_path / "sweep.h5"
-    write = store.Hdf5.write
-
-    def full(self, path, parts, about):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(store.Hdf5, "write", full)
-    with pytest.raises(FileError, match="No space left"):
-        carom.ensemble(thrown_ball(), {"body.ball.spin": [1.0, 2.0]}, executor=1, file=file, **CALL)
-    monkeypatch.setattr(store.Hdf5, "write", write)
-    runs = carom.ensemble(thrown_ball(), {"body.ball.spin": [1.0, 2.0]}, executor=1, file=file, **CALL)
-    assert not runs.missing and not runs.failed
 
 
 def test_what_is_shown(tmp_path):

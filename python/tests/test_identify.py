@@ -1,10 +1,11 @@
 """Parameters from measurements: closed forms of gradients through impacts, made-up noise, what cannot be told apart."""
 
+import concurrent.futures
 import math
 
 import numpy
 import pytest
-from ensemble_models import thrown_ball
+from ensemble_models import be_another_version, thrown_ball
 
 import carom
 from carom import AtImpact, EventDriven, Free, Measured, MeasuredImpacts, ModelError, Simulation, Surface, System, TimeStepping
@@ -62,7 +63,9 @@ def test_gradients_through_an_impact_are_those_of_the_closed_form():
     since = end - speed / G
     by_height = e * G / speed * since - e + G * since / speed
     numpy.testing.assert_allclose(result.jacobian[0], [by_height, speed * since], rtol=1e-6)
-    assert any("do not say" in note or "told apart" in note for note in result.notes)  # one number, two parameters
+    # One number, two parameters.
+    assert any("do not say what height, restitution is" in note for note in result.notes)
+    assert all(math.isinf(error) for error in result.standard_errors.values())
 
 
 def exact(height, e, end):
@@ -90,6 +93,77 @@ def meeting(mass: float, restitution: float) -> System:
         body = system.add(RigidBody(mass={"mass": m, "inertia": 1.0}, position=(x, 0.0), velocity=(v, 0.0)), name)
         system.add(Disc(body=body, radius=0.1))
     return system
+
+
+def two_balls(left: float = 0.0, right: float = 0.52, fast: float = 1.0, slow: float = 0.0, e: float = 1.0) -> System:
+    """Two equal balls on a line, without friction and gravity: places of their centres, speeds to the right, restitution."""
+    system = System()
+    system.set_default_law(Surface(friction=0.0, normal_restitution=e))
+    for name, x, v in (("left", left, fast), ("right", right, slow)):
+        body = system.add(RigidBody(mass=solid_sphere(1.0, 0.1), position=(x, 0.0), velocity=(v, 0.0)), name)
+        system.add(Disc(body=body, radius=0.1))
+    return system
+
+
+@pytest.mark.parametrize("e", [1.0, 0.5])
+def test_gradients_of_the_two_balls_that_meet(e):
+    """The scene of "Consufing Gradients on a Simple Scene" (github.com/keenon/nimblephysics, 4 November 2022): where the right
+    ball is after T = 1 s. Elastic, it is at v T + x_left + 2 r, so that the gradient by both places and both speeds is
+    (1, 0, 1, 0); the report has (0.75, 0.25, 0.91, 0.08). With a restitution e it is at
+    x_right + u T + (1 + e) / 2 ((v - u) T - (x_right - x_left - 2 r)).
+    """
+    end, share = 1.0, 0.5 * (1.0 + e)
+    free = {"left": Free(0.0, scale=0.1), "right": 0.52, "fast": 1.0, "slow": Free(0.0, scale=0.1)}
+    by_places_and_speeds = [share, 1.0 - share, share * end, (1.0 - share) * end]
+    expected = [*by_places_and_speeds, 0.5 * (1.0 * end - 0.32)]
+    if e < 1.0:
+        free["e"] = Free(e, 0.0, 1.0)
+    else:
+        del expected[-1]  # no ball has more than e = 1
+    at = 0.52 + share * (1.0 * end - 0.32)
+    result = carom.identify(two_balls, free, [Measured("body.right.position.x", [end], [at])])
+    assert abs(result.residuals[0]) < 1e-9
+    numpy.testing.assert_allclose(result.jacobian[0], expected, rtol=1e-6, atol=1e-8)
+
+
+def weightless_ball(height: float, speed: float, restitution: float = 1.0) -> System:
+    """A ball that is thrown down to a floor, without gravity."""
+    system = System()
+    surface = Surface(friction=0.0, normal_restitution=restitution)
+    system.add(HalfPlane(normal=(0.0, 1.0)), surface, "floor")
+    ball = system.add(RigidBody(mass=solid_sphere(1.0, 0.25), position=(0.0, height), velocity=(0.0, -speed)), "ball")
+    system.add(Disc(body=ball, radius=0.25))
+    return system
+
+
+@pytest.mark.parametrize("e", [1.0, 0.7])
+def test_gradients_of_the_ball_without_gravity(e):
+    """The scene of "Brax contact modeling results in non-physical behavior (and non-physical gradients)"
+    (github.com/google/brax, 8 March 2023): a ball from 2.9 to 3 m, which falls at a steady speed, bounces once and is looked
+    at after T = 1 s. The report finds that the last height jumps as the first one changes. It is r + e v T - e (h - r):
+    the gradient by the first height is -e, by the speed e T. Radius and speed are chosen here: 0.25 m, 5 m/s.
+    """
+    end, radius, speed = 1.0, 0.25, 5.0
+    heights = numpy.linspace(2.9, 3.0, 101)
+    runs = carom.ensemble(
+        weightless_ball,
+        {"height": heights, "speed": [speed], "restitution": [e]},
+        mode=EventDriven(),
+        until=end,
+        outputs="body.ball.position.y",
+        executor=carom.SerialExecutor(),
+    )
+    last = radius + e * (speed * end - (heights - radius))
+    numpy.testing.assert_allclose(runs["body.ball.position.y"], last, rtol=1e-12)
+    for height in (2.9, 2.95, 3.0):
+        at = radius + e * (speed * end - (height - radius))
+        free = {"height": height, "speed": speed, "restitution": Free(e, 0.0, 1.0)}
+        expected = [-e, e * end, speed * end - (height - radius)]
+        if e == 1.0:  # its own default
+            del free["restitution"], expected[-1]
+        result = carom.identify(weightless_ball, free, [Measured("body.ball.position.y", [end], [at])])
+        assert abs(result.residuals[0]) < 1e-9
+        numpy.testing.assert_allclose(result.jacobian[0], expected, rtol=1e-6)
 
 
 def test_five_parameters_of_the_ball_between_tables_from_a_poor_start():
@@ -186,6 +260,12 @@ def test_processes_give_the_same_result():
     one, two = (carom.identify(tables, start, values, executor=executor) for executor in (None, 2))
     assert one.values == two.values
     assert (one.jacobian == two.jacobian).all()
+
+
+def test_processes_of_another_version_are_an_error():
+    with concurrent.futures.ProcessPoolExecutor(1, initializer=be_another_version) as pool:
+        with pytest.raises(ModelError, match=r"carom 0\.0\.9.*allowed: one version"):
+            carom.identify(thrown_ball, {"friction": 0.5}, [Measured("body.ball.angle", [0.1], [0.4])], executor=pool)
 
 
 def test_a_picture(tmp_path):

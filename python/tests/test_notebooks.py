@@ -1,6 +1,7 @@
 """The notebooks run, and their tables are HTML."""
 
 import pathlib
+import re
 from typing import Any
 
 import pytest
@@ -11,6 +12,7 @@ jupyter_client = pytest.importorskip("jupyter_client")
 
 NOTEBOOKS = sorted((pathlib.Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 assert NOTEBOOKS
+MANY_RUNS = {"vibrating_table", "basin_of_attraction", "thrown_between_tables", "identification"}
 
 
 def execute(notebook: Any, folder: pathlib.Path) -> None:
@@ -24,12 +26,27 @@ def execute(notebook: Any, folder: pathlib.Path) -> None:
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_notebook_runs(path: pathlib.Path, tmp_path: pathlib.Path) -> None:
-    assert path.stat().st_size < 5000 and (NOTEBOOKS[0].parents[2] / "docs" / f"{path.stem}.md").exists()
     notebook = nbformat.read(path, as_version=4)
+    page = re.search(r"Page: (docs/\w+\.md)\.", notebook.cells[0].source)
+    assert path.stat().st_size < 5000 and page and (path.parents[2] / page[1]).exists()
+    if path.stem in MANY_RUNS:
+        pytest.importorskip("matplotlib")
+        pytest.importorskip("scipy")
     assert not any(cell.get("outputs") for cell in notebook.cells)  # stored without
     execute(notebook, tmp_path)
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert any("<table>" in output.get("data", {}).get("text/html", "") for output in outputs)
+    pictures = [output for output in outputs if "image/png" in output.get("data", {})]
+    assert len(pictures) == (1 if path.stem in MANY_RUNS else 0)
+
+
+def test_every_example_of_many_runs_has_a_notebook() -> None:
+    examples = {path.stem[3:] for path in (NOTEBOOKS[0].parents[1] / "examples").glob("1[3-9]_*.py")}
+    assert examples == MANY_RUNS <= {path.stem for path in NOTEBOOKS}
+    page = (NOTEBOOKS[0].parents[2] / "docs" / "ensembles.md").read_text(encoding="utf-8")
+    for path in NOTEBOOKS:
+        if path.stem in MANY_RUNS:
+            assert f"(../python/notebooks/{path.name})" in page
 
 
 @pytest.mark.parametrize("with_tqdm", [True, False])

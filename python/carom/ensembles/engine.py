@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 import os
+import queue
 import signal
+import time
 from collections import deque
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Optional
@@ -14,11 +18,13 @@ if TYPE_CHECKING:  # an import of carom would pay for them
 import numpy
 
 from .points import Points
-from .task import Failure, Results, Task, run_columns
+from .task import Failure, Results, Task, message_of, run_message
 
-_BATCH_TIME = 0.2  # of a batch [s]: a message costs a millisecond
+_BATCH_TIME, _OF_WORKER = 0.2, 4e-3  # of a batch, and for each worker, if that is more [s]: a message costs two milliseconds
 _GRACE = 1.0  # for batches that are under way when the user ends it [s]
-_MOST_RUNS = 20000  # in a batch
+_MOST_RUNS, _MOST_BYTES = 20000, 2e6  # in a batch, of its results
+_BYTES_SENT = 256e6  # of results of all batches that are under way
+_ASKS = 1.0  # from one question to the next, how many workers Dask has [s]
 _GROWTH = 8  # of batches, from one to the next, until their time is known
 
 
@@ -42,6 +48,13 @@ def _ignore_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+def runs_of_batch(seconds: float, row: float, workers: int) -> int:
+    """How many runs are sent together. seconds: of a run. row: bytes of its results."""
+    by_time = max(_BATCH_TIME, _OF_WORKER * workers) / seconds
+    by_size = min(_MOST_BYTES, _BYTES_SENT / (2 * workers + 2)) / max(row, 1.0)
+    return max(1, int(min(by_time, by_size, _MOST_RUNS)))
+
+
 class Engine:
     """An executor, its own processes if none is given, and the batches that it has."""
 
@@ -52,9 +65,10 @@ class Engine:
         if self._processes is not None and self._processes < 1:
             raise ValueError(f"ensemble: executor is {executor} processes; allowed: one at least")
         self._executor = self._own() if self._processes is not None else executor
-        workers = self._processes or getattr(executor, "_max_workers", None) or _cores()
-        # Two batches each, so that none waits; of a serial executor each is done when it is sent.
-        self._most_sent = 1 if isinstance(executor, SerialExecutor) else 2 * workers + 2
+        self._workers = self._processes or getattr(executor, "_max_workers", None) or _cores()
+        self._client: Any = getattr(executor, "_client", None)  # of Dask
+        self._asked = -math.inf
+        self._finished: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
         self._seconds_of_run: Optional[float] = None
         self._size = 1
         self.interrupted = False
@@ -66,24 +80,21 @@ class Engine:
 
     def results(self, runs: Iterator[int]) -> Iterator[Results]:
         """Rows of all runs, as they come. Ends early, `interrupted`, on Ctrl-C."""
-        from concurrent import futures
-
         waiting: deque[list[int]] = deque()
-        sent: dict[futures.Future[Any], list[int]] = {}
+        sent: dict[Future[Any], list[int]] = {}
         batch: Optional[list[int]]
         try:
             while True:
                 # Of runs that ended a process it shows which did where each is alone.
-                while len(sent) < (1 if waiting else self._most_sent):
+                most = self._most_sent()
+                while len(sent) < (1 if waiting else most):
                     batch = waiting.popleft() if waiting else self._next(runs)
                     if not batch:
                         break
                     self._send(batch, sent, waiting)
                 if not sent:
                     return
-                done, _ = futures.wait(sent, return_when=futures.FIRST_COMPLETED)
-                # In their order, not in that of a set: the first row says the shapes of all.
-                for future in sorted(done, key=lambda each: sent[each]):
+                for future in self._done():
                     batch = sent.pop(future, None)
                     if batch is None:  # lost with its process, and waiting already
                         continue
@@ -100,6 +111,25 @@ class Engine:
         finally:
             self._end(sent)
 
+    def _most_sent(self) -> int:
+        """Batches that are under way at once: two for each worker, so that none waits; of a serial executor each is done when
+        it is sent.
+        """
+        if isinstance(self._executor, SerialExecutor):
+            return 1
+        if hasattr(self._client, "ncores") and time.monotonic() - self._asked > _ASKS:  # they come and go
+            self._workers = max(1, sum(self._client.ncores().values()))
+            self._asked = time.monotonic()
+        return 2 * self._workers + 2
+
+    def _done(self) -> list[Future[Any]]:
+        """What has come, one at least. Of thousands under way none is looked at that has not."""
+        done = [self._finished.get()]
+        with contextlib.suppress(queue.Empty):
+            while True:
+                done.append(self._finished.get_nowait())
+        return done
+
     def _end(self, sent: dict[Any, list[int]]) -> None:
         """Ends what is still under way, and the processes of its own."""
         for future in sent:
@@ -114,14 +144,17 @@ class Engine:
     def _send(self, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]) -> None:
         from concurrent.futures.process import BrokenProcessPool
 
-        points = [self._points[run] for run in batch]
+        message = message_of(batch, [self._points[run] for run in batch])
         try:
-            sent[self._executor.submit(run_columns, self._task, batch, points)] = batch
+            future = self._executor.submit(run_message, self._task, message)
         except BrokenProcessPool:
             if self._processes is None:
                 raise
             self._executor = self._own()
             waiting.appendleft(batch)
+        else:
+            sent[future] = batch
+            future.add_done_callback(self._finished.put)
 
     def _next(self, runs: Iterator[int]) -> list[int]:
         size = self._size
@@ -140,8 +173,8 @@ class Engine:
         # Runs differ; of the slower ones a batch may last longer.
         before = self._seconds_of_run
         self._seconds_of_run = of_run if before is None else 0.8 * before + 0.2 * of_run
-        wanted = int(_BATCH_TIME / self._seconds_of_run)
-        self._size = max(1, min(wanted, _GROWTH * self._size, _MOST_RUNS))
+        of_row = sum(column.nbytes for column in rows.values) / len(rows.runs)
+        self._size = min(runs_of_batch(self._seconds_of_run, of_row, self._workers), _GROWTH * self._size)
 
     def _taken(
         self, future: Any, batch: list[int], sent: dict[Any, list[int]], waiting: deque[list[int]]

@@ -12,6 +12,8 @@ import numpy.typing
 
 from .._core import ModelError
 
+_PIECE = 10_000
+
 Point = tuple[Any, ...]
 Numbers = Union[Sequence[float], "numpy.typing.NDArray[Any]"]
 
@@ -70,7 +72,8 @@ class Points:
         """Tells other parameters from these."""
         print_ = hashlib.sha256(repr((self.names, self._rows)).encode())
         for axis in self._axes:
-            print_.update(repr(axis).encode())
+            for first in range(0, len(axis), _PIECE):  # the text of a million values is not all made at once
+                print_.update(repr(axis[first : first + _PIECE]).encode())
         return print_.hexdigest()[:16]
 
 

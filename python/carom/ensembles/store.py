@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import math
 import os
 import shutil
 import time
@@ -23,6 +24,7 @@ Columns = dict[str, Any]
 
 _FIRST_WAIT = 1.0  # from one part to the next at least [s]
 _SHARE = 0.02  # of the time since the beginning, where that is longer
+_MOST_WAITING = 8e6  # then a part is written at once [bytes]
 
 
 class Format(Protocol):
@@ -49,11 +51,8 @@ class Parquet:
         writer = None
         try:
             for columns in parts:
-                lists = {
-                    name: [row.tolist() for row in column] if getattr(column, "ndim", 1) > 1 else column
-                    for name, column in columns.items()
-                }
-                table = self._arrow.table(lists).replace_schema_metadata({"carom": json.dumps(about)})
+                arrays = {name: self._array(column) for name, column in columns.items()}
+                table = self._arrow.table(arrays).replace_schema_metadata({"carom": json.dumps(about)})
                 if writer is None:
                     writer = self._parquet.ParquetWriter(path, table.schema)
                 writer.write_table(table)
@@ -65,12 +64,27 @@ class Parquet:
         file = self._parquet.ParquetFile(path)
         for group in range(file.num_row_groups):
             table = file.read_row_group(group)
-            columns = {}
-            for name in table.column_names:
-                column = table.column(name)
-                is_list = self._arrow.types.is_list(column.type)
-                columns[name] = numpy.array(column.to_pylist()) if is_list else column.to_numpy()
-            yield columns
+            yield {name: self._values(table.column(name).combine_chunks()) for name in table.column_names}
+
+    def _array(self, column: Any) -> Any:
+        """A column of arrow: of arrays, lists around one buffer of numbers."""
+        if getattr(column, "ndim", 1) < 2:
+            return column
+        made = self._arrow.array(numpy.ascontiguousarray(column).ravel())
+        for axis in range(column.ndim - 1, 0, -1):
+            offsets = numpy.arange(math.prod(column.shape[:axis]) + 1, dtype=numpy.int32) * column.shape[axis]
+            made = self._arrow.ListArray.from_arrays(offsets.astype(numpy.int32), made)
+        return made
+
+    def _values(self, array: Any) -> Any:
+        """What _array() was given."""
+        shape = [len(array)]
+        while self._arrow.types.is_list(array.type):
+            inner = array.flatten()
+            shape.append(len(inner) // max(1, len(array)))
+            array = inner
+        values = array.to_numpy(zero_copy_only=False)
+        return values if len(shape) == 1 else values.reshape(shape)
 
     def about(self, path: Path) -> dict[str, Any]:
         metadata = self._parquet.ParquetFile(path).schema_arrow.metadata or {}
@@ -139,6 +153,8 @@ class Store:
         self._parts = self.path.with_name(self.path.name + ".parts")
         self._about = about
         self._waiting: list[Columns] = []
+        self._bytes_waiting = 0
+        self._shapes: dict[str, tuple[int, ...]] = {}
         self._begun = self._written = time.monotonic()
         if not self.path.parent.is_dir():
             raise FileError(f"'{self.path}' cannot be written: there is no folder '{self.path.parent}'")
@@ -175,21 +191,38 @@ class Store:
     def tables(self) -> Iterator[Columns]:
         """What is in it."""
         for file in self._files():
-            yield from self._format.read(file)
+            for table in self._format.read(file):
+                self._learn(table)
+                yield table
+
+    def _learn(self, table: Columns) -> None:
+        """Keeps the shapes of arrays: rows that have all failed have none."""
+        for name, column in table.items():
+            if getattr(column, "ndim", 1) > 1:
+                self._shapes[name] = column.shape[1:]
+
+    def _filled(self, table: Columns) -> Columns:
+        """The same table, with arrays of NaN where rows that have all failed have one NaN each."""
+        short = [name for name in self._shapes if getattr(table[name], "ndim", 1) == 1]
+        return {**table, **{name: numpy.full((len(table[name]), *self._shapes[name]), numpy.nan) for name in short}}
 
     def add(self, columns: Columns) -> None:
-        """Rows; they are in a file within a second, or a fiftieth of the time since the beginning."""
+        """Rows; they are in a file within a second, or a fiftieth of the time since the beginning. Memory holds 8 MB of them
+        at most.
+        """
+        self._learn(columns)
         self._waiting.append(columns)
+        self._bytes_waiting += sum(numpy.asarray(column).nbytes for column in columns.values())
         now = time.monotonic()
-        if now - self._written >= max(_FIRST_WAIT, _SHARE * (now - self._begun)):
+        if self._bytes_waiting > _MOST_WAITING or now - self._written >= max(_FIRST_WAIT, _SHARE * (now - self._begun)):
             self.flush()
 
     def flush(self) -> None:
         """Writes what waits. Raises FileError; it waits then still."""
         if not self._waiting:
             return
-        self._write(self._parts / f"{self._next:06d}{self.path.suffix}", iter([_joined(self._waiting)]))
-        self._waiting = []
+        self._write(self._parts / f"{self._next:06d}{self.path.suffix}", iter([_joined([self._filled(table) for table in self._waiting])]))
+        self._waiting, self._bytes_waiting = [], 0
         self._next += 1
         self._written = time.monotonic()
 
@@ -198,7 +231,8 @@ class Store:
         self.flush()
         if self.complete:
             return
-        self._write(self.path, (table for file in self._part_files() for table in self._format.read(file)))
+        parts = (self._filled(table) for file in self._part_files() for table in self._format.read(file))
+        self._write(self.path, parts)
         shutil.rmtree(self._parts, ignore_errors=True)
 
     def _write(self, path: Path, parts: Iterator[Columns]) -> None:

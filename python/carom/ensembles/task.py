@@ -6,6 +6,7 @@ import copy
 import functools
 import hashlib
 import os
+import pickle
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -147,7 +148,7 @@ def _with_mode(data: dict[str, Any], mode: Optional[dict[str, Any]]) -> dict[str
 
 
 class Task:
-    """A run of an ensemble, by its number and its parameters. Can be pickled."""
+    """A run of an ensemble, by its number and its parameters. Processes of the same version of carom can get it."""
 
     def __init__(
         self,
@@ -173,8 +174,17 @@ class Task:
             self._data = _with_mode(self._data, self._mode)
             self._template  # raises where a path is wrong
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_template"}
+    def __reduce__(self) -> Any:
+        return _received, (__version__, self._packed)
+
+    @functools.cached_property
+    def _packed(self) -> bytes:
+        """What travels. A process of another version must not read it, and one of this version reads it once."""
+        left_out = ("_template", "_packed")
+        return pickle.dumps({name: value for name, value in self.__dict__.items() if name not in left_out})
+
+    def demand_version(self) -> None:
+        """Raises WrongCall where another version of the package has sent it."""
 
     @functools.cached_property
     def _template(self) -> Template:
@@ -253,8 +263,37 @@ class Task:
             return Failure(run, shown, str(error), type(error).__name__, parts, reached)
 
 
+class _OfAnotherVersion(Task):
+    """What a process gets that cannot read a task."""
+
+    def __init__(self, version: str) -> None:
+        self._version = version
+
+    def demand_version(self) -> None:
+        raise WrongCall(
+            f"ensemble: a process that makes runs has carom {__version__}, the program that sends them carom "
+            f"{self._version}; allowed: one version everywhere"
+        )
+
+
+def _received(version: str, packed: bytes) -> Task:
+    """The task of a message."""
+    return _unpacked(packed) if version == __version__ else _OfAnotherVersion(version)
+
+
+@functools.lru_cache(maxsize=2)
+def _unpacked(packed: bytes) -> Task:
+    """A task, which keeps its template from batch to batch."""
+    task = Task.__new__(Task)
+    task.__dict__.update(pickle.loads(packed))
+    return task
+
+
 def run_batch(task: Task, runs: Sequence[int], points: Sequence[Point]) -> Rows:
-    """Some runs, one after the other. Where Ctrl-C ends them, those that were done."""
+    """Some runs, one after the other. Where Ctrl-C ends them, those that were done. Raises WrongCall where the task comes
+    from another version of the package.
+    """
+    task.demand_version()
     begun = time.perf_counter()
     rows = Rows([], [])
     try:
@@ -268,6 +307,16 @@ def run_batch(task: Task, runs: Sequence[int], points: Sequence[Point]) -> Rows:
         rows.interrupted = True
     rows.seconds = time.perf_counter() - begun
     return rows
+
+
+def message_of(runs: Sequence[int], points: Sequence[Point]) -> bytes:
+    """What run_message() gets: bytes, in which no engine looks for what it knows, as Dask does in lists."""
+    return pickle.dumps((runs, points))
+
+
+def run_message(task: Task, message: bytes) -> Results:
+    """run_columns() of the runs of a message."""
+    return run_columns(task, *pickle.loads(message))
 
 
 def run_columns(task: Task, runs: Sequence[int], points: Sequence[Point]) -> Results:
