@@ -2,39 +2,28 @@
 
 #include <carom/integrators/event_driven/event_islands.h>
 
-#include <algorithm>
-
 namespace carom {
 
 void EventIslands::find(const GroupModel& model, FunctionRef<bool(std::size_t)> is_near) {
   const Assembly& assembly = *model.assembly;
-  pairs_.clear();
-  islands_.clear();
-  pairs_.reserve(model.pairs.size());
-  sets_.start(static_cast<Index>(assembly.layout()->bodies().size()));
+  listed_.clear();
+  joined_.clear();
   for (Index i = 0; i < model.pairs.size(); ++i) {
-    if (model.pairs[i].rolling) {
-      if (!pairs_.empty() && pairs_.back() + 1 == i) pairs_.push_back(i);
-      continue;
+    const ContactPair& pair = model.pairs[i];
+    if (pair.rolling) {
+      // It is in the island of its contact, if that is in one.
+      if (listed_.empty() || listed_.back() + 1 != i) continue;
+      joined_.push_back({joined_.back().first, joined_.back().first});
+    } else {
+      if (pair.has_outline() && !is_near(i)) continue;
+      const Index first = assembly.mechanism(pair.body);
+      joined_.push_back({first, pair.other == none ? first : assembly.mechanism(pair.other)});
     }
-    if (model.pairs[i].has_outline()) {
-      if (!is_near(i)) continue;
-    }
-    if (model.pairs[i].other != none) {
-      sets_.join(assembly.mechanism(model.pairs[i].body), assembly.mechanism(model.pairs[i].other));
-    }
-    pairs_.push_back(i);
+    listed_.push_back(i);
   }
-  const auto island_of = [&](Index pair) { return sets_.find(assembly.mechanism(model.pairs[pair].body)); };
-  const auto before = [&](Index a, Index b) { return island_of(a) < island_of(b); };
-  // Of bodies that touch the ground only they stand so already.
-  if (!std::is_sorted(pairs_.begin(), pairs_.end(), before)) {
-    std::stable_sort(pairs_.begin(), pairs_.end(), before);
-  }
-  for (Index i = 0; i < pairs_.size(); ++i) {
-    if (i == 0 || before(pairs_[i - 1], pairs_[i])) islands_.push_back({i, i});
-    islands_.back().end = i + 1;
-  }
+  islands_ = partition_.arrange(joined_, static_cast<Index>(assembly.layout()->bodies().size()));
+  pairs_.clear();
+  for (const Index place : partition_.order()) pairs_.push_back(listed_[place]);
 }
 
 }  // namespace carom

@@ -4,9 +4,9 @@
 /// Islands at an event: mechanisms that touch each other answer an impulse together. They are the unit of
 /// impacts and of the selection of modes.
 
+#include <carom/contact/island_partition.h>
 #include <carom/core/export.h>
 #include <carom/core/function_ref.h>
-#include <carom/core/numerics/union_find.h>
 #include <carom/integrators/event_driven/group_model.h>
 
 #include <cstddef>
@@ -29,9 +29,11 @@ public:
   }
 
 private:
-  UnionFind sets_;  // of mechanisms, named by their first bodies
-  std::vector<Index> pairs_;
-  std::vector<Range> islands_;  // of pairs_
+  IslandPartition partition_;        // of mechanisms, named by their first bodies
+  std::vector<JoinedNodes> joined_;  // by pairs that are near, in the order of the model
+  std::vector<Index> listed_;        // these pairs
+  std::vector<Index> pairs_;         // the same, island by island
+  std::span<const Range> islands_;   // of pairs_
 };
 
 }  // namespace carom

@@ -127,7 +127,7 @@ void GroupMeetings::part(ClockGroup& group, EventBalance& balance) {
   const std::unique_ptr<ClockGroup> last = groups_->take(group);
   std::vector<std::pair<Index, Index>> by_set;  // the set that a component is of, and the component
   for (const MotionUnknowns::Part& part : last->motion().model().parts()) {
-    by_set.emplace_back(memory_->components.find(part.component), part.component);
+    by_set.emplace_back(memory_->components.partition.island_of(part.component), part.component);
   }
   std::sort(by_set.begin(), by_set.end());
   list_.clear();

@@ -3,10 +3,10 @@
 /// \file
 /// Memory and solvers that clock groups share: one group at a time uses them.
 
+#include <carom/contact/island_partition.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
-#include <carom/core/numerics/union_find.h>
 #include <carom/integrators/event_driven/detection_memory.h>
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/group_limits.h>
@@ -17,7 +17,15 @@
 #include <carom/integrators/run/event_driven.h>
 #include <carom/integrators/run/stop_request.h>
 
+#include <vector>
+
 namespace carom {
+
+/// Components of a group that closed contacts connect.
+struct ComponentIslands {
+  IslandPartition partition;
+  std::vector<JoinedNodes> joined;
+};
 
 /// Memory by stage.
 struct CAROM_API GroupMemory {
@@ -26,7 +34,7 @@ struct CAROM_API GroupMemory {
       : motion(assembly),
         flows(options.method, options.relative_tolerance),
         instant(assembly),
-        impacts(options.impact_rules),
+        impacts(options.impact_rules, chain),
         detection(instant.now),
         work(assembly.components().size()) {
     motion.limit = EvaluationLimit(options.evaluation_limit, stop);
@@ -39,7 +47,7 @@ struct CAROM_API GroupMemory {
   ImpactMemory impacts;
   ModeMemory modes;
   DetectionMemory detection;
-  UnionFind components;  ///< of a group, that closed contacts connect
+  ComponentIslands components;
   WorkCounts work;
 };
 

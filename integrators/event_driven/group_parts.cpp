@@ -9,7 +9,7 @@ GroupParts::GroupParts(const Assembly& assembly, const Detector& contacts, const
       motion(assembly, contacts, components, options, shared.motion),
       failure(motion.model(), clock),
       detector(motion, failure, unbounded, shared.detection),
-      impacts(options, failure, shared.impacts, shared.chain),
+      impacts(failure, shared.impacts),
       modes(failure, impacts, unbounded, shared.modes, shared.chain),
       projection(motion, failure),
       limits(motion, failure, shared.work),

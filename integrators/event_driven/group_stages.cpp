@@ -1,7 +1,6 @@
 // Problem: what a clock group does between its events, and at them.
 
 #include <carom/core/dynamics/force_directions.h>
-#include <carom/core/numerics/union_find.h>
 #include <carom/integrators/event_driven/closed_joints.h>
 #include <carom/integrators/event_driven/group_stages.h>
 
@@ -186,15 +185,16 @@ bool is_connected(const GroupParts& group) {
   const std::vector<MotionUnknowns::Part>& parts = group.motion.model().parts();
   if (parts.size() == 1) return true;
   const Assembly& assembly = *group.motion.model().assembly;
-  UnionFind& sets = group.memory->components;
-  sets.start(static_cast<Index>(assembly.components().size()));
+  ComponentIslands& islands = group.memory->components;
+  islands.joined.clear();
+  for (const MotionUnknowns::Part& part : parts) islands.joined.push_back({part.component, part.component});
   for (const ActiveContact& contact : group.motion.active().list()) {
     if (contact.pair.other == none) continue;
-    sets.join(assembly.component_of(contact.pair.body), assembly.component_of(contact.pair.other));
+    islands.joined.push_back(
+        {assembly.component_of(contact.pair.body), assembly.component_of(contact.pair.other)});
   }
-  const Index first = sets.find(parts.front().component);
-  return std::all_of(parts.begin(), parts.end(),
-                     [&](const MotionUnknowns::Part& part) { return sets.find(part.component) == first; });
+  const auto components = static_cast<Index>(assembly.components().size());
+  return islands.partition.arrange(islands.joined, components).size() == 1;
 }
 
 }  // namespace carom

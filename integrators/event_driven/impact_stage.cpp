@@ -41,6 +41,8 @@ bool is_repeated(const Constraint& contact, const Constraint& other, double gap_
                     [=](double one, double two) { return std::abs(one - two) <= allowed; });
 }
 
+const ImpactRules& rules_of(const EventInstant& at) { return at.motion.model().options->impact_rules; }
+
 }  // namespace
 
 bool ImpactStage::resolve(EventInstant& at) {
@@ -75,7 +77,7 @@ void ImpactStage::settle(EventInstant& at) {
     bool any = false;
     SettlingLimit& limit = round == 0 ? settlings_ : again;
     for (std::size_t island = 0; island < at.islands.size(); ++island) {
-      any = memory_->settling.settle(at.islands.pairs(island), at, *chain_, limit) || any;
+      any = memory_->settling.settle(at.islands.pairs(island), at, memory_->chain, limit) || any;
     }
     if (!any || !resolve(at)) return;
     at.update();
@@ -84,7 +86,7 @@ void ImpactStage::settle(EventInstant& at) {
 
 bool ImpactStage::settle(std::span<const Index> pairs, EventInstant& at) {
   SettlingLimit alone;
-  if (!memory_->settling.settle(pairs, at, *chain_, alone)) return false;
+  if (!memory_->settling.settle(pairs, at, memory_->chain, alone)) return false;
   if (resolve(at)) at.update();
   return true;
 }
@@ -102,13 +104,13 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
                                  EventInstant& at) {
   list_touching(pairs, at);
   std::vector<Constraint>& touching = memory_->touching;
-  const bool sequential = options_->impact_rules.order == ImpactOrder::sequential;
+  const bool sequential = rules_of(at).order == ImpactOrder::sequential;
   // The first impact of a sequence tells whether it is slow.
   const bool captured = fastest <= capture_speed(pairs, at) && counts.sequence == 0;
   if (!captured) leave_out_repeated(at.scales.gap_noise);
   memory_->note = {};
   if (sequential && !captured) {
-    memory_->note.cut_sequence = counts.sequence++ >= options_->impact_rules.sequence_limit;
+    memory_->note.cut_sequence = counts.sequence++ >= rules_of(at).sequence_limit;
     if (!memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
   }
   share_impact_restitution(touching, at.velocities(), 0.0);
@@ -123,7 +125,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
     if (!closes_slow) fail_unsolved(problem, at);
     // Slower than the capture speed all that touches closes anyway.
     problem.forget_impulses();
-  } else if (options_->impact_rules.energy_gain == EnergyGain::limit && !captured) {
+  } else if (rules_of(at).energy_gain == EnergyGain::limit && !captured) {
     const auto again = [&] { return solve(problem, at); };
     memory_->note.restitution_factor = limit_gain(problem, touching, again);
     if (!problem.report().usable()) fail_unsolved(problem, at);
@@ -138,7 +140,7 @@ bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
   JointReactions& joints = at.motion.joints();
   joints.build(problem, memory_->touching, at.velocities());
   problem.set_free_velocity(at.velocities());
-  return joints.solve(problem, memory_->touching, at.now, *chain_) && stops(problem);
+  return joints.solve(problem, memory_->touching, at.now, memory_->chain) && stops(problem);
 }
 
 /// True if less than half is left of the approach: else impacts follow each other without end. Where bodies
@@ -226,7 +228,7 @@ void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant
   std::string what =
       "the contact problem of an impact is not solved (" + why + at.motion.model().driven() + ")";
   if (problem.report().outcome == Outcome::no_solution) what += "; " + fastest_of(touching, at.velocities());
-  if (options_->impact_rules.refuse_jams && touching.size() > 1) {
+  if (rules_of(at).refuse_jams && touching.size() > 1) {
     what += " (impact_rules.refuse_jams is set; use one e for surfaces between which a body jams)";
   }
   failure_->fail(what, failure_->names(touching), &problem);
@@ -261,7 +263,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
     if (contact.has_dry_friction()) continue;
     if (problem.map().impulse(c, 0) > 0.0) accumulation_.remember(at.time, contact.key);
   }
-  if (gain == 0.0 || options_->impact_rules.energy_gain != EnergyGain::refuse) return;
+  if (gain == 0.0 || rules_of(at).energy_gain != EnergyGain::refuse) return;
   failure_->fail("an impact adds " + to_text(gain) + " J, which impact_rules.energy_gain forbids",
                  failure_->names({problem.constraints().begin(), problem.constraints().end()}), &problem);
 }
@@ -273,7 +275,7 @@ void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant&
     if (at.touches(i)) continue;
     const Constraint& contact = at.contacts[i];
     // Almost without loads what is slow is far off all the same.
-    if (contact.gap > options_->gap_tolerance) continue;
+    if (contact.gap > at.motion.model().options->gap_tolerance) continue;
     const double speed = contact.normal_velocity(at.velocities());
     const double fall = contact.normal_acceleration(at.now.acceleration.data());
     if (!(fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit)) continue;

@@ -38,11 +38,15 @@ struct ImpactCounts {
           .plastic_jams = !rules.refuse_jams};
 }
 
-/// Memory of impacts, shared by clock groups.
+/// Solvers and memory of impacts, shared by clock groups.
 struct ImpactMemory {
-  explicit ImpactMemory(const ImpactRules& rules)
-      : problem(options_of_impacts(rules)), of_other_law({.plastic_jams = !rules.refuse_jams}) {}
+  /// \param solvers must outlive it
+  ImpactMemory(const ImpactRules& rules, SolverChain& solvers)
+      : chain(solvers),
+        problem(options_of_impacts(rules)),
+        of_other_law({.plastic_jams = !rules.refuse_jams}) {}
 
+  SolverChain& chain;
   IslandProblem problem;             ///< by Newton's law,
   IslandProblem of_other_law;        ///< and by others
   std::vector<Constraint> touching;  ///< constraints of the problem,
@@ -60,9 +64,7 @@ struct ImpactMemory {
 class CAROM_API ImpactStage {
 public:
   /// All must outlive it.
-  ImpactStage(const EventDriven& options, const GroupFailure& failure, ImpactMemory& memory,
-              SolverChain& chain)
-      : options_(&options), failure_(&failure), memory_(&memory), chain_(&chain) {}
+  ImpactStage(const GroupFailure& failure, ImpactMemory& memory) : failure_(&failure), memory_(&memory) {}
 
   /// Begins with a new motion.
   void start() {
@@ -102,10 +104,8 @@ private:
   [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;
   [[noreturn]] void fail_unsolved(const IslandProblem& problem, const EventInstant& at);
 
-  const EventDriven* options_;
   const GroupFailure* failure_;
   ImpactMemory* memory_;
-  SolverChain* chain_;
   Accumulation accumulation_;
   SettlingLimit settlings_;
 };
