@@ -19,6 +19,7 @@ set(carom_public_headers
     contact/detection/ground_piece_shapes.h
     contact/detection/half_space.h
     contact/detection/prescribed_motion.h
+    contact/impact_rules.h
     contact/solvers/chain_statistics.h
     contact/solvers/contact_mode.h
     contact/solvers/contact_problem.h
@@ -89,7 +90,6 @@ set(carom_public_headers
     integrators/run/event_driven.h
     integrators/run/event_log.h
     integrators/run/impact_note.h
-    integrators/run/impact_rules.h
     integrators/run/overlap_rules.h
     integrators/run/lasting_contact.h
     integrators/run/step_report.h

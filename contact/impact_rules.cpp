@@ -1,91 +1,35 @@
-// Problem: which law and how much restitution an impact has.
-
 #include <carom/contact/impact_rules.h>
 
-#include <algorithm>
-#include <cstddef>
+#include <carom/core/errors.h>
 
 namespace carom {
 
-namespace {
-
-// Speeds that differ by less than this part are the same: rounding of symmetric scenes.
-constexpr double same_speed = 1e-9;
-// Factors tried from 1 downwards: the gain need not fall with the factor.
-constexpr int factors = 64;
-constexpr int halvings = 52;
-
-}  // namespace
-
-std::optional<ImpactLaw> law_of_impact(std::span<const Constraint> constraints) {
-  std::optional<ImpactLaw> law;
-  for (const Constraint& constraint : constraints) {
-    if (constraint.type != ConstraintType::contact) continue;
-    if (law && *law != constraint.law.impact_law) return std::nullopt;
-    law = constraint.law.impact_law;
+std::string_view to_string(EnergyGain gain) {
+  switch (gain) {
+    case EnergyGain::report:
+      return "report";
+    case EnergyGain::limit:
+      return "limit";
+    case EnergyGain::refuse:
+      return "refuse";
   }
-  return law ? law : ImpactLaw::newton;
+  return "unknown";
 }
 
-void keep_fastest(std::vector<Constraint>& constraints, const double* velocities) {
-  double fastest = 0.0;
-  for (const Constraint& constraint : constraints) {
-    fastest = std::max(fastest, -constraint.normal_velocity(velocities));
+void check_rules(const ImpactRules& rules, const std::string& mode) {
+  const std::string part = mode + ": impact_rules.";
+  if (rules.order > ImpactOrder::sequential) {
+    throw ModelError(part + "order is " + std::to_string(static_cast<int>(rules.order)) +
+                     "; allowed: simultaneous (0) or sequential (1)");
   }
-  const double least = (1.0 - same_speed) * fastest;
-  bool kept = true;  // the contact that rolling resistance belongs to
-  std::erase_if(constraints, [&](const Constraint& constraint) {
-    if (constraint.type == ConstraintType::rolling) return !kept;
-    kept = constraint.has_dry_friction() || !(-constraint.normal_velocity(velocities) < least);
-    return !kept;
-  });
-}
-
-ImpulseWork work_of_impact(const IslandProblem& problem) {
-  const std::span<const double> impulses = problem.impulses(), before = problem.before();
-  std::vector<double> xi(impulses.size());
-  problem.problem().velocities(impulses, xi);
-  const double factor = problem.restitution_factor();
-  ImpulseWork work;
-  std::size_t row = 0;
-  for (const Constraint& constraint : problem.constraints()) {
-    for (int i = 0; i < constraint.rows; ++i, ++row) {
-      work.add(impulses[row], before[row], xi[row] - factor * constraint.restitution(i) * before[row]);
-      if (constraint.type == ConstraintType::joint_friction)
-        work.allow_for_joint_friction(impulses[row], before[row]);
-    }
+  if (rules.sequence_limit < 1) {
+    throw ModelError(part + "sequence_limit is " + std::to_string(rules.sequence_limit) +
+                     "; allowed: at least 1");
   }
-  return work;
-}
-
-double limit_gain(const IslandProblem& problem, std::span<Constraint> constraints,
-                  FunctionRef<bool()> solve) {
-  if (!work_of_impact(problem).is_gain()) return 1.0;
-  std::vector<Surface> laws;
-  for (const Constraint& constraint : constraints) laws.push_back(constraint.law);
-  bool solved = true;
-  const auto gains = [&](double factor) {
-    for (std::size_t c = 0; c < laws.size(); ++c) {
-      Surface& law = constraints[c].law;
-      law.normal_restitution = factor * laws[c].normal_restitution;
-      law.tangential_restitution = factor * laws[c].tangential_restitution;
-    }
-    solved = solved && solve();
-    if (!solved) return false;
-    // Well within rounding, for whoever adds up the works from other numbers.
-    const ImpulseWork work = work_of_impact(problem);
-    return work.gain > 0.1 * work.tolerance();
-  };
-  int grid = factors - 1;
-  while (grid > 0 && gains(static_cast<double>(grid) / factors)) --grid;
-  double least = static_cast<double>(grid) / factors, most = static_cast<double>(grid + 1) / factors;
-  for (int i = 0; i < halvings && solved; ++i) {
-    const double middle = 0.5 * (least + most);
-    if (middle <= least || middle >= most) break;
-    (gains(middle) ? most : least) = middle;
+  if (rules.energy_gain > EnergyGain::refuse) {
+    throw ModelError(part + "energy_gain is " + std::to_string(static_cast<int>(rules.energy_gain)) +
+                     "; allowed: report (0), limit (1) or refuse (2)");
   }
-  static_cast<void>(gains(least));
-  return least;
 }
 
 }  // namespace carom

@@ -1,39 +1,42 @@
 #pragma once
 
 /// \file
-/// Rules of an impact beside its contact problem, the same in both modes: which law, which contacts, how much
-/// restitution.
+/// Options of impacts, which both modes have (strike.h).
 
-#include <carom/contact/impulse_map.h>
-#include <carom/contact/island_problem.h>
-#include <carom/core/constraint.h>
+#include <carom/contact/solvers/impact_order.h>
 #include <carom/core/export.h>
-#include <carom/core/function_ref.h>
-#include <carom/core/surface.h>
 
-#include <optional>
-#include <span>
-#include <vector>
+#include <cstdint>
+#include <string>
+#include <string_view>
 
 namespace carom {
 
-/// Law of the contacts of an impact, Newton's where all are limits of joints or friction in them, which take
-/// the law of the contacts. Nothing where contacts differ.
-[[nodiscard]] CAROM_API std::optional<ImpactLaw> law_of_impact(std::span<const Constraint> constraints);
+/// Treatment of an impact that would add energy (possible where e_n and e_t differ).
+enum class EnergyGain : std::uint8_t {
+  report,  ///< nothing: records and statistics say how much
+  limit,   ///< all e of the impact are scaled by the largest factor that does not (ImpactNote says it)
+  refuse   ///< it ends the run with a SolverError
+};
 
-/// Leaves of the constraints of an impact the one that approaches fastest, those as fast up to 1e-9 of its
-/// speed, and friction in joints. \param velocities of all bodies
-CAROM_API void keep_fastest(std::vector<Constraint>& constraints, const double* velocities);
+/// Name of a choice: "report", "limit", "refuse".
+[[nodiscard]] CAROM_API std::string_view to_string(EnergyGain gain);
 
-/// Work of the answer of an impact, and its scale. \param problem with free velocities, which are those
-/// before
-[[nodiscard]] CAROM_API ImpulseWork work_of_impact(const IslandProblem& problem);
+/// How impacts of several contacts are resolved (docs/contact_law.md).
+struct ImpactRules {
+  ImpactOrder order = ImpactOrder::simultaneous;  ///< contacts of one impact together or one after the other
+  /// Of sequential impacts: the most at one instant among bodies that touch, >= 1. Then one simultaneous
+  /// problem with e = 0 ends them; its loss is booked as `accumulation`.
+  int sequence_limit = 1000;
+  EnergyGain energy_gain = EnergyGain::report;  ///< of an impact that would add energy
+  /// Refuse, with a SolverError that names them, contacts that jam a body and have no answer by the law of
+  /// impact (docs/contact_law.md).
+  /// Else their island is solved with e = 0, in that step of time stepping or in that impact of the
+  /// event-driven mode, which ImpactNote::restitution_factor says.
+  bool refuse_jams = false;
+};
 
-/// Scales the restitution of all constraints of an impact that gains energy by the largest factor, to 1/64 at
-/// least, that does not. Returns the factor; 1, and nothing done, where there is no gain.
-/// \param solve states and solves the impact of the constraints as they are; false where it is not solved,
-/// which ends the search
-[[nodiscard]] CAROM_API double limit_gain(const IslandProblem& problem, std::span<Constraint> constraints,
-                                          FunctionRef<bool()> solve);
+/// Throws ModelError naming the option that is not allowed. \param mode name of the mode, for the message
+CAROM_API void check_rules(const ImpactRules& rules, const std::string& mode);
 
 }  // namespace carom

@@ -1,7 +1,5 @@
 // Problem: impacts at one instant, where they come from and where they lead to.
 
-#include <carom/contact/impact_restitution.h>
-#include <carom/contact/impact_rules.h>
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/answering_bodies.h>
 #include <carom/integrators/event_driven/impact_stage.h>
@@ -103,35 +101,29 @@ double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventIn
 void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts,
                                  EventInstant& at) {
   list_touching(pairs, at);
-  std::vector<Constraint>& touching = memory_->touching;
-  const bool sequential = rules_of(at).order == ImpactOrder::sequential;
   // The first impact of a sequence tells whether it is slow.
   const bool captured = fastest <= capture_speed(pairs, at) && counts.sequence == 0;
-  if (!captured) leave_out_repeated(at.scales.gap_noise);
-  memory_->note = {};
-  if (sequential && !captured) {
-    memory_->note.cut_sequence = counts.sequence++ >= rules_of(at).sequence_limit;
-    if (!memory_->note.cut_sequence) keep_fastest(touching, at.velocities());
-  }
-  share_impact_restitution(touching, at.velocities(), 0.0);
-  if (captured) add_captured(pairs, at);
-  const bool closes = captured || memory_->note.cut_sequence;
-  if (closes) {
-    for (Constraint& contact : touching) contact.remove_restitution();
-  }
-  IslandProblem& problem = closes ? memory_->problem : problem_by_law();
+  captured ? add_captured(pairs, at) : leave_out_repeated(at.scales.gap_noise);
+  const StrikeInput impact{.rules = rules_of(at),
+                           .velocity = at.velocities(),
+                           .speed_noise = at.scales.speed_noise,
+                           .struck = counts.sequence,
+                           .plastic = captured};
+  const auto by = [&](IslandProblem& problem) { return solve(problem, at); };
+  const Struck struck = memory_->strike.strike(memory_->touching, impact, by);
+  if (struck.outcome == Struck::Outcome::laws_differ)
+    failure_->fail(laws_of_impact_differ, failure_->names(memory_->touching));
   const bool closes_slow = captured && counts.closings++ < most_closings_at_once;
-  if (!solve(problem, at)) {
-    if (!closes_slow) fail_unsolved(problem, at);
+  if (struck.outcome == Struck::Outcome::not_solved) {
+    if (!closes_slow) fail_unsolved(*struck.problem, at);
     // Slower than the capture speed all that touches closes anyway.
-    problem.forget_impulses();
-  } else if (rules_of(at).energy_gain == EnergyGain::limit && !captured) {
-    const auto again = [&] { return solve(problem, at); };
-    memory_->note.restitution_factor = limit_gain(problem, touching, again);
-    if (!problem.report().usable()) fail_unsolved(problem, at);
+    struck.problem->forget_impulses();
   }
-  memory_->note.restitution_factor *= problem.restitution_factor();
-  apply(closes ? EventKind::accumulation : EventKind::impact, problem, at);
+  if (!captured && impact.rules.order == ImpactOrder::sequential) ++counts.sequence;
+  memory_->note = {};
+  memory_->note.cut_sequence = struck.cut_sequence;
+  memory_->note.restitution_factor = struck.restitution_factor;
+  apply(captured || struck.cut_sequence ? EventKind::accumulation : EventKind::impact, *struck.problem, at);
   if (closes_slow) close_captured(pairs, at);
 }
 
@@ -149,7 +141,7 @@ bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
 bool ImpactStage::stops(const IslandProblem& problem) {
   constexpr double most_left = 0.5;
   const ContactProblem& stated = problem.problem();
-  if (&problem != &memory_->problem || stated.groups().size() < 2) return true;
+  if (&problem != &memory_->strike.by_newton() || stated.groups().size() < 2) return true;
   std::vector<double>& xi = memory_->velocities_after;
   xi.resize(problem.impulses().size());
   stated.velocities(problem.impulses(), xi);
@@ -162,21 +154,7 @@ bool ImpactStage::stops(const IslandProblem& problem) {
   return left <= most_left * approach;
 }
 
-/// The problem that is solved by the law of its contacts. Fails where they have different ones.
-IslandProblem& ImpactStage::problem_by_law() {
-  const std::optional<ImpactLaw> law = law_of_impact(memory_->touching);
-  if (!law) {
-    failure_->fail(
-        "contacts of one impact have different laws of impact; allowed: one law for all that touch at an "
-        "instant, or impact_rules.order sequential",
-        failure_->names(memory_->touching));
-  }
-  if (*law == ImpactLaw::newton) return memory_->problem;
-  memory_->of_other_law.use(&memory_->by_law, *law);
-  return memory_->of_other_law;
-}
-
-/// Lists the contacts of an impact, with the friction of their present sliding.
+/// Lists the contacts of an impact.
 void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant& at) {
   std::vector<Constraint>& touching = memory_->touching;
   touching.clear();
@@ -192,9 +170,6 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
     Constraint& contact = touching.emplace_back(at.contacts[i]);
     memory_->places.push_back(i);
     contact.of_joint.friction_bound = 0.0;
-    // Rounding is no sliding: what sticks has its static friction.
-    const double sliding = contact.sliding_speed(at.velocities());
-    if (!rolling) contact.friction = contact.law.friction_at(sliding > at.scales.speed_noise ? sliding : 0.0);
     // Before the jump of a driver it did not approach: there is nothing to give back.
     if (at.rate_jumps && at.before_at[i] != none) contact.remove_restitution();
   }

@@ -5,9 +5,10 @@
 /// the capture speed close their contacts (accumulations).
 
 #include <carom/contact/active_set.h>
+#include <carom/contact/impact_rules.h>
 #include <carom/contact/island_problem.h>
-#include <carom/contact/solvers/impact_solver.h>
 #include <carom/contact/solvers/solver_chain.h>
+#include <carom/contact/strike.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/accumulation.h>
@@ -16,7 +17,6 @@
 #include <carom/integrators/event_driven/impact_settling.h>
 #include <carom/integrators/event_driven/slow_contacts.h>
 #include <carom/integrators/run/impact_note.h>
-#include <carom/integrators/run/impact_rules.h>
 
 #include <cstdint>
 #include <span>
@@ -42,20 +42,16 @@ struct ImpactCounts {
 struct ImpactMemory {
   /// \param solvers must outlive it
   ImpactMemory(const ImpactRules& rules, SolverChain& solvers)
-      : chain(solvers),
-        problem(options_of_impacts(rules)),
-        of_other_law({.plastic_jams = !rules.refuse_jams}) {}
+      : chain(solvers), strike(options_of_impacts(rules)) {}
 
   SolverChain& chain;
-  IslandProblem problem;             ///< by Newton's law,
-  IslandProblem of_other_law;        ///< and by others
+  Strike strike;
   std::vector<Constraint> touching;  ///< constraints of the problem,
   std::vector<Index> places;         ///< and their pairs, as long as all of these are in it
   std::vector<ActiveContact> captured;
   std::vector<ImpactCounts> counts;      ///< by island
   std::vector<double> velocities_after;  ///< of the problem's rows, W P + b
-  ImpactSolver by_law;
-  ImpactNote note;  ///< of the impact at hand
+  ImpactNote note;                       ///< of the impact at hand
   ImpactSettling settling;
   ContactClosing closing;
 };
@@ -92,7 +88,6 @@ private:
   void resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts, EventInstant& at);
   [[nodiscard]] bool solve(IslandProblem& problem, EventInstant& at);
   [[nodiscard]] bool stops(const IslandProblem& problem);
-  [[nodiscard]] IslandProblem& problem_by_law();
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
   void leave_out_repeated(double gap_noise);
   void add_captured(std::span<const Index> pairs, const EventInstant& at);

@@ -3,9 +3,9 @@
 /// \file
 /// Options of the event-driven mode (docs/method.md, section 7).
 
+#include <carom/contact/impact_rules.h>
 #include <carom/core/export.h>
 #include <carom/integrators/flow/flow_method.h>
-#include <carom/integrators/run/impact_rules.h>
 
 #include <cstdint>
 #include <string>

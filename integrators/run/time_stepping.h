@@ -3,9 +3,9 @@
 /// \file
 /// Options of the time-stepping mode (Johansson 1999, section 4).
 
+#include <carom/contact/impact_rules.h>
 #include <carom/contact/solvers/sweep_budget.h>
 #include <carom/core/export.h>
-#include <carom/integrators/run/impact_rules.h>
 #include <carom/integrators/run/overlap_rules.h>
 
 #include <cstddef>

@@ -31,7 +31,7 @@ StepImpacts::StepImpacts(StepParts& parts)
           has_other_impact_law(parts.constraints.detector())),
       capture_(CaptureRule::of(*parts.assembly, parts.options)),
       balance_(*parts.assembly, parts.options),
-      problem_(options_of_impacts(parts)),
+      strike_(options_of_impacts(parts)),
       response_(*parts.assembly) {
   if (!on_) return;
   chain_.set_budget(budget_of(parts.options));
@@ -119,51 +119,38 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     const double least = any_slow ? noise : std::max(noise, options.capture_speed);
     if (!(fastest(contacts) > least)) return;
     touching_.assign(contacts.begin(), contacts.end());
-    for (Constraint& contact : touching_) {
-      if (contact.has_dry_friction()) continue;
-      const double sliding = contact.sliding_speed(start_.v.data());
-      contact.friction = contact.law.friction_at(sliding > noise ? sliding : 0.0);
+    const StrikeInput impact{.rules = options.impact_rules,
+                             .velocity = start_.v.data(),
+                             .speed_noise = noise,
+                             .struck = round,
+                             .plastic = any_cut};
+    const auto by = [&](IslandProblem& problem) { return solve(problem); };
+    const Struck struck = strike_.strike(touching_, impact, by);
+    if (struck.outcome == Struck::Outcome::laws_differ) {
+      static_cast<void>(solve(strike_.by_newton()));
+      errors(in).fail_impacts(strike_.by_newton(), laws_of_impact_differ);
     }
+    if (struck.outcome == Struck::Outcome::not_solved) errors(in).fail_contact(*struck.problem);
     ImpactNote note;
-    note.cut_sequence = any_cut || (sequential && round >= options.impact_rules.sequence_limit);
-    if (sequential && !note.cut_sequence) keep_fastest(touching_, start_.v.data());
-    if (note.cut_sequence) {
-      for (Constraint& contact : touching_) contact.remove_restitution();
-    }
-    solve_by_law(in, note);
-    apply(in, note);
+    note.cut_sequence = any_cut || struck.cut_sequence;
+    note.restitution_factor = struck.restitution_factor;
+    apply(in, note, *struck.problem);
     if (note.cut_sequence) return;
   }
-  parts_->errors(in, in.assembly.component_of(contacts.front().body()))
-      .fail_impacts(problem_, "impacts do not come to an end");
+  errors(in).fail_impacts(strike_.by_newton(), "impacts do not come to an end");
+}
+
+/// Errors of the component of an impact.
+StepErrors StepImpacts::errors(const StepInput& in) {
+  return parts_->errors(in, in.assembly.component_of(touching_.front().body()));
 }
 
 /// States and solves the impact of the contacts listed.
-bool StepImpacts::solve() {
-  problem_.build(touching_, start_.v.data());
-  problem_.respond(response_);
-  problem_.set_free_velocity(start_.v.data());
-  return problem_.solve(chain_).usable();
-}
-
-void StepImpacts::solve_by_law(const StepInput& in, ImpactNote& note) {
-  const auto errors = [&] { return parts_->errors(in, in.assembly.component_of(touching_.front().body())); };
-  const std::optional<ImpactLaw> law = law_of_impact(touching_);
-  problem_.use(nullptr, ImpactLaw::newton);
-  if (!law && !note.cut_sequence) {
-    static_cast<void>(solve());
-    errors().fail_impacts(problem_,
-                          "contacts of one impact have different laws of impact; allowed: one law for all "
-                          "that touch at an instant, or impact_rules.order sequential");
-  }
-  if (law && *law != ImpactLaw::newton && !note.cut_sequence) problem_.use(&by_law_, *law);
-  if (!solve()) errors().fail_contact(problem_);
-  if (parts_->options.impact_rules.energy_gain == EnergyGain::limit) {
-    const auto again = [&] { return solve(); };
-    note.restitution_factor = limit_gain(problem_, touching_, again);
-    if (!problem_.report().usable()) errors().fail_contact(problem_);
-  }
-  note.restitution_factor *= problem_.restitution_factor();
+bool StepImpacts::solve(IslandProblem& problem) {
+  problem.build(touching_, start_.v.data());
+  problem.respond(response_);
+  problem.set_free_velocity(start_.v.data());
+  return problem.solve(chain_).usable();
 }
 
 double StepImpacts::kinetic_energy(const StepInput& in) const {
@@ -179,14 +166,14 @@ double StepImpacts::kinetic_energy(const StepInput& in) const {
 /// Books the impact. Joints whose rate is prescribed do work on it, which is the rest of the change.
 /// Velocities of the rule of mean loads obey joints but for an error of the step, on which their answers do
 /// work.
-void StepImpacts::apply(const StepInput& in, const ImpactNote& note) {
+void StepImpacts::apply(const StepInput& in, const ImpactNote& note, const IslandProblem& problem) {
   const bool driven = std::any_of(joints_.begin(), joints_.end(),
                                   [](const JointConstraints& joints) { return joints.depends_on_time(); });
   const bool has_rest = driven || (parts_->rule.is_mean() && !joints_.empty());
   const double before = has_rest ? kinetic_energy(in) : 0.0;
-  problem_.map().add_velocities(start_.v.data());
+  problem.map().add_velocities(start_.v.data());
   const EnergyFlows known = balance_.result().flows;
-  const double gain = balance_.book_impact(problem_, start_.v.data(), note, in, parts_->trial);
+  const double gain = balance_.book_impact(problem, start_.v.data(), note, in, parts_->trial);
   EnergyFlows& flows = balance_.result().flows;
   if (has_rest) {
     double booked = 0.0;
@@ -206,7 +193,7 @@ void StepImpacts::apply(const StepInput& in, const ImpactNote& note) {
     }
   }
   if (gain > 0.0 && parts_->options.impact_rules.energy_gain == EnergyGain::refuse) {
-    parts_->errors(in, in.assembly.component_of(touching_.front().body())).refuse_gain(problem_, gain);
+    errors(in).refuse_gain(problem, gain);
   }
 }
 

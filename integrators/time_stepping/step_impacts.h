@@ -7,11 +7,10 @@
 /// after it, and its contacts have e = 0. A contact that closes more slowly does not rebound, unless it is
 /// located and nothing presses it (ClosingNotes). Friction in joints takes no part in these impacts.
 
-#include <carom/contact/impact_rules.h>
 #include <carom/contact/island_partition.h>
 #include <carom/contact/island_problem.h>
-#include <carom/contact/solvers/impact_solver.h>
 #include <carom/contact/solvers/solver_chain.h>
+#include <carom/contact/strike.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
@@ -52,10 +51,10 @@ private:
                               const double* v) const;
   void resolve_island(const StepInput& in, std::span<const Constraint> contacts);
   [[nodiscard]] double fastest(std::span<const Constraint> contacts) const;
-  [[nodiscard]] bool solve();
+  [[nodiscard]] bool solve(IslandProblem& problem);
+  [[nodiscard]] StepErrors errors(const StepInput& in);
   void place_joints(const StepInput& in);
-  void solve_by_law(const StepInput& in, ImpactNote& note);
-  void apply(const StepInput& in, const ImpactNote& note);
+  void apply(const StepInput& in, const ImpactNote& note, const IslandProblem& problem);
   [[nodiscard]] double kinetic_energy(const StepInput& in) const;
 
   StepParts* parts_;
@@ -63,9 +62,8 @@ private:
   CaptureRule capture_;
   State start_;
   StepBalance balance_;
-  IslandProblem problem_;
   IslandPartition partition_;
-  ImpactSolver by_law_;
+  Strike strike_;
   SolverChain chain_;
   std::vector<JointConstraints> joints_;
   std::vector<JointConstraints*> list_;  // of them

@@ -1,14 +1,13 @@
 // Contacts that jam a body: by enumeration of all modes the law of impact has no answer where e differ, and
 // always has one without restitution.
 
+#include "tests/contact/touching_body.h"
 #include "tests/random.h"
 
 #include <carom/carom.h>
-#include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/impact_solver.h>
 #include <carom/contact/solvers/solution_list.h>
-#include <carom/core/assembly.h>
 
 #include <gtest/gtest.h>
 
@@ -23,69 +22,8 @@ namespace {
 using namespace carom;
 using namespace carom::planar;
 using carom_test::Random;
-
-/// A body of 1 kg whose points touch a half-plane each.
-struct Touch {
-  Vec<2> point, normal;
-  Surface law;
-};
-
-class Jam {
-public:
-  explicit Jam(const std::vector<Touch>& touches) : assembly_(body_that(touches)) {
-    const State state = assembly_.initial_state();
-    Evaluation evaluation = make_evaluation(assembly_);
-    evaluate_positions(assembly_, 0, state.view(), evaluation);
-    Detector(assembly_).find(0, state.view(), evaluation, 0.0, contacts_);
-    for (Constraint& contact : contacts_) contact.friction = contact.law.friction;
-  }
-
-  /// States an impact from a velocity; solve() solves it.
-  IslandProblem impact(const std::array<double, 3>& velocity, bool plastic_jams) {
-    IslandProblem problem(IslandOptions{.plastic_jams = plastic_jams});
-    state(problem, velocity);
-    return problem;
-  }
-  void state(IslandProblem& problem, const std::array<double, 3>& velocity) {
-    problem.build(contacts_, velocity.data());
-    MassResponse masses(assembly_);
-    problem.respond(masses);
-    problem.set_free_velocity(velocity.data());
-  }
-  /// Change of kinetic energy by its impulses [J].
-  double gain(const IslandProblem& problem, const std::array<double, 3>& velocity) const {
-    std::array<double, 3> after = velocity;
-    problem.map().add_velocities(after.data());
-    const std::array<double, 3> masses{1.0, 1.0, inertia};
-    double change = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      change += 0.5 * masses[i] * (after[i] * after[i] - velocity[i] * velocity[i]);
-    }
-    return change;
-  }
-  SolverChain chain;
-
-private:
-  static constexpr double inertia = 0.1;
-
-  static System body_that(const std::vector<Touch>& touches) {
-    System system;
-    const BodyId body = system.add(RigidBody{.mass = {.mass = 1.0, .inertia = inertia}});
-    unsigned group = 1;
-    for (const Touch& touch : touches) {
-      const ContactFilter alone{.groups = group, .touches = group};
-      system.add(Point{.body = body, .position = touch.point, .filter = alone});
-      system.add(
-          HalfPlane{.point = touch.point + 1e-9 * touch.normal, .normal = touch.normal, .filter = alone},
-          touch.law);
-      group *= 2;
-    }
-    return system;
-  }
-
-  Assembly assembly_;
-  std::vector<Constraint> contacts_;
-};
+using carom_test::Touch;
+using Jam = carom_test::TouchingBody;
 
 /// Between a floor and a ceiling: their impulses cancel each other. It falls onto the floor.
 std::vector<Touch> corridor(double floor, double ceiling) {
