@@ -240,7 +240,7 @@ GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, I
       if (any) feature = regions.nearest();
       gap = regions.gap(point, feature);
       const double height = gap.gap + at.around.radius;
-      if (any && at.chain && pieces_.is_out_behind(on_ground, height, vertex)) {
+      if (any && at.chain && pieces_.is_out_behind(on_ground, feature, height, vertex)) {
         gap.gap = -height - at.around.radius;  // it is on the other side
         gap.normal = -gap.normal;
       }

@@ -48,6 +48,40 @@ TEST(FloorsOfPieces, AParticleAtAnyDistanceBeforeTheSeamPassesIt) {
   }
 }
 
+// The sides of such a floor and of its walls lie in one plane as well, and go around its corners: faces of
+// one line that are touched to different depths.
+TEST(FloorsOfPieces, BoxesOfBlocksHoldWhatFallsIntoThem) {
+  constexpr double half = 0.1, wide = 0.4, thick = 0.3;
+  for (const Schedule run : runs) {
+    for (const double angle : {0.0, 0.3}) {
+      for (const double under : {0.1, 0.5, 2.0}) {
+        for (const double sides_from : {0.0, -0.5 * under, -under}) {
+          SCOPED_TRACE(name(run) + ", " + std::to_string(angle) + " rad, " + std::to_string(under) + " m, " +
+                       std::to_string(sides_from) + " m");
+          const Frame at{angle, Vec<2>(0.2, 0.1)};
+          System system = empty(at, {.friction = 0.3, .normal_restitution = 0.5});
+          const double reach = wide + (sides_from < 0.0 ? 0.0 : thick);
+          system.add(tile(at, -reach, reach, 0.0, under));
+          system.add(tile(at, -wide - thick, -wide, 1.0, 1.0 - sides_from));
+          system.add(tile(at, wide, wide + thick, 1.0, 1.0 - sides_from));
+          const BodyId body = system.add(RigidBody{.mass = box(1.0, 2.0 * half, 2.0 * half),
+                                                   .position = at.place(0.02, 0.5),
+                                                   .angle = 0.4,
+                                                   .velocity = at.direction(0.5, -1.0)});
+          system.add(Polygon{.body = body,
+                             .vertices = {{-half, -half}, {half, -half}, {half, half}, {-half, half}}});
+          const Simulation simulation = run_of(system, run, 0.6);
+          const Vec<2> place = simulation.state().position(body) - at.origin;
+          constexpr double late = 5e-3;  // a step
+          EXPECT_GE(place.dot(at.direction(0.0, 1.0)), half - late);
+          EXPECT_LE(place.dot(at.direction(0.0, 1.0)), 0.5);
+          EXPECT_LE(std::abs(place.dot(at.direction(1.0, 0.0))), wide - half + late);
+        }
+      }
+    }
+  }
+}
+
 // A real step, of 0.1 mm, is met: only what lies in one plane is a floor.
 TEST(FloorsOfPieces, AHigherTopIsAWall) {
   for (const Schedule run : runs) {
