@@ -82,6 +82,29 @@ TEST(FloorsOfPieces, BoxesOfBlocksHoldWhatFallsIntoThem) {
   }
 }
 
+// The corner of the edge and the rear corner of the box both touch: not in one place, so that the rear one
+// has opened although the edge pushes, and takes no part in the impact. Both modes see the same impacts.
+TEST(FloorsOfPieces, ABoxThatTipsOverAnEdgeIsHitAsItStands) {
+  carom_test::Random random(1);
+  for (int scene = 0; scene < 20; ++scene) {
+    const double half = random.uniform(0.05, 0.15), high = random.uniform(0.5, 1.5) * half,
+                 speed = random.uniform(1.0, 3.0), beyond = random.uniform(0.1, 0.3) * half,
+                 gap = random.uniform(0.01, 0.05);
+    const auto end_of = [&](Schedule run) {
+      System system = empty({}, {.friction = 0.0, .normal_restitution = 0.1});
+      system.add(tile({}, -2.0, 0.0, 0.0, 1.0));
+      // The front one is off the edge when the rear one, twice as fast, meets it.
+      const double at = beyond - 2.0 * gap;
+      std::array<BodyId, 2> boxes{add_box(system, {}, at, half, high, 2.0 * speed),
+                                  add_box(system, {}, at + 2.0 * half + gap, half, high, speed)};
+      const Simulation simulation = run_of(system, run, gap / speed + 0.005);
+      return std::array{simulation.state().spin(boxes[0]), simulation.state().spin(boxes[1])};
+    };
+    const auto located = end_of(Schedule::located), events = end_of(Schedule::event_driven);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(located[i], events[i], 0.05 * speed) << scene;
+  }
+}
+
 // A real step, of 0.1 mm, is met: only what lies in one plane is a floor.
 TEST(FloorsOfPieces, AHigherTopIsAWall) {
   for (const Schedule run : runs) {
