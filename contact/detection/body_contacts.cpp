@@ -198,7 +198,7 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
     if (touch.gap.gap <= query.margin) memory.touching.push_back(touch);
     if (touch.gap.gap > query.margin && query.lasting != nullptr &&
         query.lasting->contains(key_of(a, b, touch.gap)))
-      add_lasting({i, j, touch.gap, touch.gap.gap / query.lasting->step()}, query, memory);
+      add_lasting({i, j, touch.gap, touch.gap.gap / query.lasting->step(), touch.of_corners}, query, memory);
     return memory.touching.size() > before;
   };
   if (of_a.size() == 1 && of_b.size() == 1 && margin == any_gap) {
@@ -216,10 +216,11 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
     is_alone = is_alone || first.gap.normal != found[0].normal;  // the other one is of the hidden side
     second = second_contact(first.gap, meeting);
   }
-  const bool is_first = add_if_any(first), is_second = second && add_if_any({i, j, *second, 0.0});
+  first.of_corners = second.has_value();
+  const bool is_first = add_if_any(first), is_second = second && add_if_any({i, j, *second, 0.0, true});
   // Where one of two corners that meet touches, so does the other one.
   if (second && is_first != is_second && std::abs(first.gap.gap - second->gap) <= lengths_.corner)
-    memory.touching.push_back({i, j, is_first ? *second : first.gap, 0.0});
+    memory.touching.push_back({i, j, is_first ? *second : first.gap, 0.0, true});
   // One of the same name as the second is of the same corner.
   if (is_alone || (second && key_of(a, b, *second) == key_of(a, b, found[1]))) return;
   const BodyTouch far{i, j, found[1], 0.0};
@@ -234,7 +235,7 @@ void BodyContacts::add_lasting(BodyTouch touch, const ContactQuery& query, BodyC
   Constraint& contact = memory.trial;
   contact = {};
   write(touch, query.state, contact);
-  if (query.lasting->lasts(contact.key, touch.gap.gap, std::abs(contact.drift[0]))) {
+  if (query.lasting->lasts(contact.key, touch.gap.gap, std::abs(contact.drift[0]), touch.of_corners)) {
     memory.touching.push_back(touch);
   }
 }

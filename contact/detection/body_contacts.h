@@ -36,6 +36,7 @@ struct BodyTouch {
   Index a = none, b = none;       ///< places of the outlines, that of the lesser key first
   GapPoint gap;                   ///< where they touch
   double allowed_approach = 0.0;  ///< Constraint::allowed_approach [m/s]
+  bool of_corners = false;        ///< one of the two of corners that meet
 };
 
 /// Memory of a search for contacts of bodies: its answer does not depend on it.

@@ -34,15 +34,16 @@ void Detector::find(Range components, const ContactQuery& query, std::vector<Con
 
 namespace {
 
-/// True if a contact had an impulse, or, of corners that meet, the other contact that they have: the two may
-/// change names from step to step. They follow one another in the list.
-bool is_pressed(std::span<const std::pair<ConstraintKey, ContactMode>> contacts, std::size_t which) {
-  if (contacts[which].second != ContactMode::open) return true;
+/// Whether a contact had an impulse, and what by its name may be the other contact of the same two corners.
+/// Of corners that meet the two follow one another in the list.
+LastingContacts::Pressed pressed_of(std::span<const std::pair<ConstraintKey, ContactMode>> contacts,
+                                    std::size_t which) {
   const auto is_other = [&](std::size_t i) {
     return contacts[i].second != ContactMode::open &&
            may_be_of_corners(contacts[i].first, contacts[which].first);
   };
-  return (which > 0 && is_other(which - 1)) || (which + 1 < contacts.size() && is_other(which + 1));
+  return {contacts[which].second != ContactMode::open,
+          (which > 0 && is_other(which - 1)) || (which + 1 < contacts.size() && is_other(which + 1))};
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
   const GroundShapes& shapes = ground_.shapes();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ConstraintKey& key = contacts[i].first;
-    const bool pressed = is_pressed(contacts, i);
+    const LastingContacts::Pressed pressed = pressed_of(contacts, i);
     const bool of_bodies = key.b.owner != FeatureKey::Owner::obstacle;
     if (key.a.owner != FeatureKey::Owner::body || of_bodies) {
       out.add(key, pressed);

@@ -55,7 +55,7 @@ FaceChain::Nearest FaceChain::nearest(const Vec<2>& point) const {
                before_head = !is_beyond(edge.head, edge, point, true);
     if (behind_tail && before_head) {
       const double height = edge.height(point), size = std::abs(height);
-      take(outline.size() + i, size, height < -depth ? size : height);
+      take(outline.size() + i, size, height < -depths[i] ? size : height);
     } else {
       take_vertex(behind_tail ? edge.head : edge.tail);
     }
@@ -112,7 +112,8 @@ double FaceChain::clearance(Index feature, const Vec<2>& point) const {
   const OutlineEdge edge(outline, feature - outline.size());
   const double along = edge.coordinate(point);
   const double to_end = std::min(along, edge.length - along);
-  return std::min({to_next, std::max(0.0, to_end), std::abs(edge.height(point) + depth)});
+  return std::min(
+      {to_next, std::max(0.0, to_end), std::abs(edge.height(point) + depths[feature - outline.size()])});
 }
 
 }  // namespace carom

@@ -38,7 +38,7 @@ struct CAROM_API FaceChain {
   ConvexOutline outline;                 ///< its vertices; radius 0
   std::span<const ChainCorner> corners;  ///< by vertex
   bool is_closed = false;                ///< the last vertex is joined to the first
-  double depth = 0.0;                    ///< what is deeper does not touch it [m]
+  std::span<const double> depths;        ///< by face: what is deeper does not touch it [m]
   FeatureLengths lengths{};              ///< to which features are told apart
 
   /// Number of faces.

@@ -270,6 +270,7 @@ private:
   // The sides of a shape as faces of polylines, in place of its sharp pieces.
   void write(Index shape) {
     std::vector<GroundPiece>& pieces = shapes_[shape].pieces;
+    shapes_[shape].is_one_solid = pieces.size() == 1 && pieces.front().form == Form::solid;
     std::erase_if(pieces, [](const GroundPiece& piece) {
       return piece.form == Form::face ||
              (piece.form == Form::solid && piece.radius == 0.0 && piece.points.size() > 2);

@@ -33,6 +33,7 @@ struct RestingShape {
   ContactFilter filter{};               ///< shapes that touch not the same bodies do not cover each other
   std::vector<GroundPiece> pieces{};    ///< where they stand
   std::optional<GroundLine> line = {};  ///< given of a half-plane, which has no pieces
+  bool is_one_solid = false;            ///< its faces were made of one convex solid
 };
 
 /// Faces end in one place, or in one line, to this part of the length of the shorter one.

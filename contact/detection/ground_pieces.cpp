@@ -114,7 +114,14 @@ GroundPieces::GroundPieces(const System& system, const GroundShapes& shapes, con
         add_solid(std::move(piece), shape, speed);
       }
     }
-    if (!faces.empty()) add_chains(faces, shape, speed);
+    if (!faces.empty()) {
+      GroundOutline chain;
+      chain.form = Form::face;
+      chain.shape = shape;
+      chain.is_of_solid = all[shape].is_one_solid;
+      chain.surface_speed = speed;
+      add_chains(faces, chain);
+    }
     Index feature = 0;
     for (Index i = first; i < outlines_.size(); ++i) {
       outlines_[i].key = shapes.key(shape);
@@ -134,12 +141,13 @@ void GroundPieces::add_solid(GroundPiece piece, Index shape, double surface_spee
   outline.vertices.begin = static_cast<Index>(vertices_.size());
   vertices_.insert(vertices_.end(), piece.points.begin(), piece.points.end());
   corners_.resize(vertices_.size(), ChainCorner::convex);
+  depths_.resize(vertices_.size(), 0.0);
   pieces_.push_back({std::move(piece), static_cast<Index>(outlines_.size()), 0});
   finish(outline);
 }
 
-/// Faces of one shape, in which some follow others.
-void GroundPieces::add_chains(std::vector<GroundPiece>& faces, Index shape, double surface_speed) {
+/// Faces of one shape, in which some follow others. \param all what all chains have in common
+void GroundPieces::add_chains(std::vector<GroundPiece>& faces, const GroundOutline& all) {
   const std::size_t n = faces.size();
   const auto is_joined = [&](std::size_t i) { return goes_on(faces[i], faces[(i + 1) % n]); };
   // A chain may go around the end of the list: it begins behind a corner that ends one.
@@ -149,24 +157,22 @@ void GroundPieces::add_chains(std::vector<GroundPiece>& faces, Index shape, doub
   for (std::size_t first = 0; first < n;) {
     std::size_t count = 1;
     while (first + count < n && is_joined(first + count - 1)) ++count;
-    add_chain(faces, first, count, shape, surface_speed);
+    add_chain(faces, first, count, all);
     first += count;
   }
 }
 
 void GroundPieces::add_chain(const std::vector<GroundPiece>& faces, std::size_t first, std::size_t count,
-                             Index shape, double surface_speed) {
+                             GroundOutline outline) {
   const GroundPiece &tail = faces[first], &head = faces[first + count - 1];
-  GroundOutline outline;
-  outline.form = Form::face;
-  outline.shape = shape;
   outline.depth = tail.depth;
-  outline.surface_speed = surface_speed;
   outline.is_closed = goes_on(head, tail);
   outline.vertices.begin = static_cast<Index>(vertices_.size());
   for (std::size_t i = 0; i < count; ++i) {
     const GroundPiece& face = faces[first + i];
     vertices_.push_back(face.points[1]);
+    depths_.push_back(face.depth);
+    outline.depth = std::min(outline.depth, face.depth);
     const Vec<2> in = direction(face.points[0], face.points[1]),
                  out = direction(face.points[1], face.points[2]);
     const bool is_flat = !face.tail_is_free && corner_turn(in, out) == CornerTurn::flat;
@@ -178,6 +184,7 @@ void GroundPieces::add_chain(const std::vector<GroundPiece>& faces, std::size_t 
         end_corner(tail.tail_is_free, tail.points[0], tail.points[1], tail.points[2]);
     vertices_.push_back(head.points[2]);
     corners_.push_back(end_corner(head.head_is_free, head.points[1], head.points[2], head.points[3]));
+    depths_.push_back(0.0);  // no face begins there
   }
   finish(outline);
 }
@@ -242,22 +249,35 @@ bool GroundPieces::is_through(const Piece& piece, const ConvexOutline& a, const 
       0.5;  // of its neighbours: behind a face no others are nearer, but in slender peaks
   const double height = at.gap + a.radius;
   if (at.kind != GapKind::edge_of_b || height >= 0.0) return false;
+  const Vec<2>& vertex = a.vertices[at.feature_a];
+  if (outlines_[piece.outline].is_of_solid) {
+    if (height >= -lengths_.sunk()) return false;
+    // Of the sides of its own chain, neighbours have been looked at.
+    if (std::abs(chain(piece.outline).nearest(vertex).distance) < -thick * height) return true;
+    return is_out_elsewhere(piece.outline, height, vertex);
+  }
   const std::vector<Vec<2>>& points = piece.at.points;
   double least = std::numeric_limits<double>::infinity();
   if (!piece.at.tail_is_free) least = (points[1] - points[0]).squaredNorm();
   if (!piece.at.head_is_free) least = std::min(least, (points[3] - points[2]).squaredNorm());
   if (height * height <= thick * thick * least) return false;
-  return is_free(outlines_[piece.outline].shape, a.vertices[at.feature_a]);
+  return is_out_elsewhere(piece.outline, height, vertex);
 }
 
-bool GroundPieces::is_out_behind(Index outline, double height, const Vec<2>& point) const {
+bool GroundPieces::is_out_behind(Index outline, Index feature, double height, const Vec<2>& point) const {
   const GroundOutline& of = outlines_[outline];
+  const Index n = of.vertices.size();
+  const bool is_face = feature >= n && feature < 2 * n;
+  const double depth = is_face ? depths_[of.vertices.begin + feature - n] : of.depth;
   // A point that touches is hardly deeper, and need not be looked at further.
-  return height < -lengths_.sunk() && (height < -of.depth || is_free(of.shape, point));
+  return height < -lengths_.sunk() && (height < -depth || is_out_elsewhere(outline, height, point));
 }
 
-/// True if a point is in front of what is nearest to it of the faces of a shape.
-bool GroundPieces::is_free(Index shape, const Vec<2>& point) const {
+/// True of a point behind a chain that is in front of what is nearest to it of the faces of the shape. What
+/// is in a convex solid is out through its nearest side first: there it is enough that this is of another
+/// chain. \param height of the point over the chain, < 0
+bool GroundPieces::is_out_elsewhere(Index outline, double height, const Vec<2>& point) const {
+  const auto [shape, is_of_solid] = std::pair(outlines_[outline].shape, outlines_[outline].is_of_solid);
   double least = std::numeric_limits<double>::infinity();
   bool free = false;
   for (Index i = 0; i < outlines_.size(); ++i) {
@@ -266,6 +286,7 @@ bool GroundPieces::is_free(Index shape, const Vec<2>& point) const {
     const FaceChain::Nearest nearest = faces.nearest(point);
     if (!(std::abs(nearest.distance) < least)) continue;
     least = std::abs(nearest.distance);
+    if (is_of_solid && i != outline && least < -height) return true;
     const Index n = faces.outline.size();
     free = nearest.feature >= n ? OutlineEdge(faces.outline, nearest.feature - n).height(point) > 0.0
                                 : faces.corners[nearest.feature] == ChainCorner::convex;
@@ -291,8 +312,9 @@ ConvexOutline GroundPieces::view(Index outline) const {
 FaceChain GroundPieces::chain(Index outline) const {
   const GroundOutline& of = outlines_[outline];
   const std::span<const ChainCorner> corners(corners_);
-  return {view(outline), corners.subspan(of.vertices.begin, of.vertices.size()), of.is_closed, of.depth,
-          lengths_};
+  const std::span<const double> depths(depths_);
+  const Index first = of.vertices.begin, n = of.vertices.size();
+  return {view(outline), corners.subspan(first, n), of.is_closed, depths.subspan(first, n), lengths_};
 }
 
 GapPoint GroundPieces::tracked(Index outline, const ConvexOutline& a, Index feature_a,

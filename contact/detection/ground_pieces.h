@@ -33,11 +33,12 @@ struct GroundOutline : OutlineFeatures {
   GroundPiece::Form form = GroundPiece::Form::solid;  ///< what it is made of
   Index shape = none;                                 ///< number in GroundShapes
   double radius = 0.0;                                ///< of a solid's outline, or of the circle [m]
-  double depth = 0.0;                                 ///< of a chain: what is deeper does not touch it [m]
+  double depth = 0.0;                                 ///< of a chain: the least of its faces [m]
   bool is_closed = false;                             ///< a chain whose last vertex is joined to the first
-  double surface_speed = 0.0;                         ///< of a conveyor [m/s]
-  double reach = 0.0;  ///< radius of a circle around the shape's point o that holds it [m]
-  Box<2> box;          ///< around it; of the inside of a circle around that
+  bool is_of_solid = false;    ///< a chain of sides of a convex solid, of which others cover some
+  double surface_speed = 0.0;  ///< of a conveyor [m/s]
+  double reach = 0.0;          ///< radius of a circle around the shape's point o that holds it [m]
+  Box<2> box;                  ///< around it; of the inside of a circle around that
 
   /// True if bodies are inside of it.
   [[nodiscard]] bool is_hollow() const { return form == GroundPiece::Form::hollow; }
@@ -88,9 +89,9 @@ public:
   /// The gap of given features, as tracked_gap() (gap_convex.h).
   [[nodiscard]] GapPoint tracked(Index outline, const ConvexOutline& a, Index feature_a,
                                  Index feature_b) const;
-  /// True of a point at a height over a chain which is behind it and does not touch it: deeper than its
-  /// depth, or out of the ground again, in front of another face of the shape.
-  [[nodiscard]] bool is_out_behind(Index outline, double height, const Vec<2>& point) const;
+  /// True of a point at a height over a feature of a chain which is behind it and does not touch it: deeper
+  /// than its face is touched, or out of the ground on another side (is_out_elsewhere()).
+  [[nodiscard]] bool is_out_behind(Index outline, Index feature, double height, const Vec<2>& point) const;
   /// Writes the rows of a contact with an outline, as fill_pair_rows(), the velocity of a conveyor's surface
   /// with them. \param at where the shape is now \param motion of its shape, null at rest \param end likewise
   /// at the end of the step
@@ -104,12 +105,12 @@ private:
     Index edge;  // its number in the outline: of a face
   };
   void add_solid(GroundPiece piece, Index shape, double surface_speed);
-  void add_chains(std::vector<GroundPiece>& faces, Index shape, double surface_speed);
-  void add_chain(const std::vector<GroundPiece>& faces, std::size_t first, std::size_t count, Index shape,
-                 double surface_speed);
+  void add_chains(std::vector<GroundPiece>& faces, const GroundOutline& all);
+  void add_chain(const std::vector<GroundPiece>& faces, std::size_t first, std::size_t count,
+                 GroundOutline outline);
   void finish(GroundOutline outline);
   [[nodiscard]] bool is_through(const Piece& piece, const ConvexOutline& a, const GapPoint& at) const;
-  [[nodiscard]] bool is_free(Index shape, const Vec<2>& point) const;
+  [[nodiscard]] bool is_out_elsewhere(Index outline, double height, const Vec<2>& point) const;
 
   FeatureLengths lengths_;
   std::vector<Piece> pieces_;
@@ -117,6 +118,7 @@ private:
   std::vector<Vec<2>> vertices_;
   std::vector<std::array<Vec<2>, 3>> around_;
   std::vector<ChainCorner> corners_;  // by vertex; of others than chains convex
+  std::vector<double> depths_;        // by vertex: of the face of a chain that begins there [m]
   std::vector<Index> outline_of_;     // by vertex
 };
 

@@ -35,6 +35,12 @@ public:
   /// may be lost on that way.
   static constexpr double most_opening = 8.0;
 
+  /// Which contacts had an impulse.
+  struct Pressed {
+    bool itself = false;
+    bool other = false;  ///< one that may be the other contact of the same two corners
+  };
+
   /// Forgets all contacts. \param step length of a step that gaps may come from [s]
   void start(double step, const OpeningSlack& slack = {}) {
     step_ = step;
@@ -43,9 +49,10 @@ public:
     pressed_.clear();
     centres_.clear();
   }
-  /// Adds a contact. \param pressed whether it had an impulse \param centre its body, in the order of
-  /// assembly, where it touches at its centre of mass
-  void add(const ConstraintKey& key, bool pressed = false, Index centre = none) {
+  /// Adds a contact of which nobody asks whether it had an impulse.
+  void add(const ConstraintKey& key) { add(key, Pressed{}); }
+  /// Adds a contact. \param centre its body, in the order of assembly, where it touches at its centre of mass
+  void add(const ConstraintKey& key, const Pressed& pressed, Index centre = none) {
     contacts_.add(key);
     if (slack_.of_pressed > 0.0) pressed_.push_back(pressed);
     if (centre != none) centres_.push_back(centre);
@@ -63,9 +70,12 @@ public:
   /// True if a contact is among them.
   [[nodiscard]] bool contains(const ConstraintKey& key) const { return contacts_.find(key) != none; }
   /// True if a contact is among them and had an impulse, where these have a slack of their own.
-  [[nodiscard]] bool is_pressed(const ConstraintKey& key) const {
+  /// \param of_corners whether it is one of the two of corners that meet, which may change names from step to
+  /// step: then it is enough that the other one had an impulse
+  [[nodiscard]] bool is_pressed(const ConstraintKey& key, bool of_corners) const {
     const Index known = contacts_.find(key);
-    return known < pressed_.size() && pressed_[known];
+    if (!(known < pressed_.size())) return false;
+    return pressed_[known].itself || (of_corners && pressed_[known].other);
   }
   /// True if a body within a range, in the order of assembly, touched at its centre of mass.
   [[nodiscard]] bool any_centre(Range bodies) const;
@@ -78,11 +88,12 @@ public:
     return keeps_pressed() ? slack_.of_all : std::max(slack_.of_all, slack_.of_pressed);
   }
   /// True if a contact is among them and turning explains its gap, or slack. \param turning bound on |d|
-  /// [m/s^2]
-  [[nodiscard]] bool lasts(const ConstraintKey& key, double gap, double turning) const {
+  /// [m/s^2] \param of_corners as of is_pressed()
+  [[nodiscard]] bool lasts(const ConstraintKey& key, double gap, double turning,
+                           bool of_corners = false) const {
     const double explained = reach(turning);
     if (gap <= explained + slack_.of_all) return contains(key);
-    return gap <= explained + slack_.of_pressed && is_pressed(key);
+    return gap <= explained + slack_.of_pressed && is_pressed(key, of_corners);
   }
   /// The largest gap [m] that turning explains. \param turning bound on |d| [m/s^2]
   [[nodiscard]] double reach(double turning) const { return most_opening * step_ * step_ * turning; }
@@ -93,8 +104,8 @@ private:
   double step_ = 0.0;
   OpeningSlack slack_;
   ConstraintTable contacts_;
-  std::vector<bool> pressed_;   // in the order of add(); empty without a slack of theirs
-  std::vector<Index> centres_;  // ascending
+  std::vector<Pressed> pressed_;  // in the order of add(); empty without a slack of theirs
+  std::vector<Index> centres_;    // ascending
 };
 
 }  // namespace carom

@@ -154,14 +154,14 @@ void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Co
     second = second_contact(found[0], *meeting);
   }
   const double most = search.query.margin, any = std::numeric_limits<double>::infinity();
-  const bool is_first = add(search, on_ground, found[0], most, out),
-             is_second = second && add(search, on_ground, *second, most, out);
+  const bool is_first = add(search, on_ground, found[0], most, second.has_value(), out),
+             is_second = second && add(search, on_ground, *second, most, true, out);
   // Where one of two corners that meet touches, so does the other one.
   if (second && is_first != is_second && std::abs(found[0].gap - second->gap) <= pieces_.lengths().corner)
-    add(search, on_ground, is_first ? *second : found[0], any, out);
+    add(search, on_ground, is_first ? *second : found[0], any, true, out);
   // One of the same name as the second is of the same corner.
   if (!is_alone && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
-    add(search, on_ground, found[1], most, out);
+    add(search, on_ground, found[1], most, false, out);
 }
 
 /// The corners nearest to where a sharp outline of a body touches one of the ground; nothing where no two are
@@ -190,9 +190,10 @@ std::optional<CornerMeeting> PieceContacts::meeting_near(const Search& search, I
 }
 
 /// Appends a contact that is closed, or was and may still be. \param local its gap, in the frame of the
-/// family \param most largest gap of what is closed [m]
+/// family \param most largest gap of what is closed [m] \param of_corners whether it is one of the two of
+/// corners that meet
 bool PieceContacts::add(const Search& search, Index on_ground, const GapPoint& local, double most,
-                        std::vector<Constraint>& out) const {
+                        bool of_corners, std::vector<Constraint>& out) const {
   const ContactQuery& query = search.query;
   const GapPoint gap = search.motion == nullptr ? local : in_space(search.frame, local);
   const bool touches = gap.gap <= most;
@@ -207,7 +208,7 @@ bool PieceContacts::add(const Search& search, Index on_ground, const GapPoint& l
   Constraint contact;
   fill(key, search.outline, on_ground, gap, query.state, search.motion, end, contact);
   if (!touches) {
-    if (!query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]))) return false;
+    if (!query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]), of_corners)) return false;
     contact.allowed_approach = gap.gap / query.lasting->step();
   }
   (same != out.end() ? *same : out.emplace_back()) = contact;
@@ -240,7 +241,7 @@ GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, I
       if (any) feature = regions.nearest();
       gap = regions.gap(point, feature);
       const double height = gap.gap + at.around.radius;
-      if (any && at.chain && pieces_.is_out_behind(on_ground, height, vertex)) {
+      if (any && at.chain && pieces_.is_out_behind(on_ground, feature, height, vertex)) {
         gap.gap = -height - at.around.radius;  // it is on the other side
         gap.normal = -gap.normal;
       }

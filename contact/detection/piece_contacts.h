@@ -92,7 +92,7 @@ private:
   void find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const;
   [[nodiscard]] std::optional<CornerMeeting> meeting_near(const Search& search, Index ground,
                                                           const GapPoint& contact) const;
-  bool add(const Search& search, Index ground, const GapPoint& local, double most,
+  bool add(const Search& search, Index ground, const GapPoint& local, double most, bool of_corners,
            std::vector<Constraint>& out) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, Index ground, const GapPoint& gap,
             const StateView& state, const GroundMotion* motion, const GroundAtEnd& end,

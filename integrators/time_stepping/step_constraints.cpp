@@ -4,6 +4,7 @@
 #include <carom/contact/impact_restitution.h>
 #include <carom/core/numerics/fetch_ahead.h>
 #include <carom/integrators/time_stepping/gap_rounding.h>
+#include <carom/integrators/time_stepping/kept_names.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 
 #include <algorithm>
@@ -137,15 +138,17 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
 /// that stays closed to rounding over a step, for it would close in it again and again; and one that pushed
 /// in the step before, if it parts slowly: as its answer was to keep it closed, it parts by what that was
 /// wrong. One that parts and acts may come back as fast, which does no work: held where it has come to, it
-/// would gain what loads take to draw it back.
-bool StepConstraints::is_freed(const StepInput& in, Constraint& constraint) const {
+/// would gain what loads take to draw it back. \param of_corners whether it is one of the two of corners that
+/// meet
+bool StepConstraints::is_freed(const StepInput& in, bool of_corners, Constraint& constraint) const {
   constexpr double noise = 1e-12;  // of the velocities along a normal
   if (constraint.has_dry_friction()) return false;
   const double* const v = in.start.v.data();
   const double rate = constraint.velocity(0, v);
   if (!(rate > rules_.slowest)) return false;
   const bool near = !(constraint.gap < -rules_.rounding), parts = rate > noise * constraint.speed(0, v);
-  if (near && parts && (rate > rules_.capture_speed || !lasting_.is_pressed(constraint.key))) return true;
+  if (near && parts && (rate > rules_.capture_speed || !lasting_.is_pressed(constraint.key, of_corners)))
+    return true;
   constraint.allowed_approach = std::max(constraint.allowed_approach, rate);
   return false;
 }
@@ -153,9 +156,13 @@ bool StepConstraints::is_freed(const StepInput& in, Constraint& constraint) cons
 /// Takes those that do not act out of a list, from its place `first` on.
 void StepConstraints::free_parting(const StepInput& in, std::size_t first,
                                    std::vector<Constraint>& out) const {
+  const double same_place = detector_.pieces().pieces().lengths().corner;
   std::size_t kept = first;
+  bool meets_next = false;  // two contacts of corners that meet follow one another
   for (std::size_t i = first; i < out.size(); ++i) {
-    if (is_freed(in, out[i])) continue;
+    const bool met = meets_next;
+    meets_next = i + 1 < out.size() && are_of_corners(out[i], out[i + 1], same_place);
+    if (is_freed(in, met || meets_next, out[i])) continue;
     if (kept < i) out[kept] = out[i];
     ++kept;
   }
@@ -225,7 +232,7 @@ std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range comp
     const std::span<Constraint> found = plain_.all();
     if (rules_.parting == Parting::acts) return found;
     bool all_act = true;
-    for (Constraint& contact : found) all_act = !is_freed(in, contact) && all_act;
+    for (Constraint& contact : found) all_act = !is_freed(in, false, contact) && all_act;
     if (all_act) return found;
   }
   single_.clear();
@@ -244,7 +251,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     std::erase_if(search_.touching, [&](const BodyTouch& touch) {
       Constraint written;
       bodies.write(touch, in.start.view(), written);
-      return is_freed(in, written);
+      return is_freed(in, touch.of_corners, written);
     });
     touching = search_.touching;
   }
@@ -275,7 +282,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
       bodies.write_rows(touching[source], search_, in.start.view(), out);
     }
     if (sticks) take_sticking({&out, 1});
-    if (rules_.parting == Parting::is_free) static_cast<void>(is_freed(in, out));
+    if (rules_.parting == Parting::is_free) static_cast<void>(is_freed(in, touching[source].of_corners, out));
   }
   islands_.take(constraints_);
   if (detector_.joints().has_friction()) share_restitution(islands(), in, rules_.capture_speed);

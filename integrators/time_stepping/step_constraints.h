@@ -83,7 +83,7 @@ private:
   }
   [[nodiscard]] bool find_joining(const StepInput& in, std::span<const Range> batches,
                                   const StepTrial& trial);
-  [[nodiscard]] bool is_freed(const StepInput& in, Constraint& constraint) const;
+  [[nodiscard]] bool is_freed(const StepInput& in, bool of_corners, Constraint& constraint) const;
   void free_parting(const StepInput& in, std::size_t first, std::vector<Constraint>& out) const;
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
   void add_rolling(std::size_t first, std::vector<Constraint>& out);

@@ -48,6 +48,63 @@ TEST(FloorsOfPieces, AParticleAtAnyDistanceBeforeTheSeamPassesIt) {
   }
 }
 
+// The sides of such a floor and of its walls lie in one plane as well, and go around its corners: faces of
+// one line that are touched to different depths.
+TEST(FloorsOfPieces, BoxesOfBlocksHoldWhatFallsIntoThem) {
+  constexpr double half = 0.1, wide = 0.4, thick = 0.3;
+  for (const Schedule run : runs) {
+    for (const double angle : {0.0, 0.3}) {
+      for (const double under : {0.1, 0.5, 2.0}) {
+        for (const double sides_from : {0.0, -0.5 * under, -under}) {
+          SCOPED_TRACE(name(run) + ", " + std::to_string(angle) + " rad, " + std::to_string(under) + " m, " +
+                       std::to_string(sides_from) + " m");
+          const Frame at{angle, Vec<2>(0.2, 0.1)};
+          System system = empty(at, {.friction = 0.3, .normal_restitution = 0.5});
+          const double reach = wide + (sides_from < 0.0 ? 0.0 : thick);
+          system.add(tile(at, -reach, reach, 0.0, under));
+          system.add(tile(at, -wide - thick, -wide, 1.0, 1.0 - sides_from));
+          system.add(tile(at, wide, wide + thick, 1.0, 1.0 - sides_from));
+          const BodyId body = system.add(RigidBody{.mass = box(1.0, 2.0 * half, 2.0 * half),
+                                                   .position = at.place(0.02, 0.5),
+                                                   .angle = 0.4,
+                                                   .velocity = at.direction(0.5, -1.0)});
+          system.add(Polygon{.body = body,
+                             .vertices = {{-half, -half}, {half, -half}, {half, half}, {-half, half}}});
+          const Simulation simulation = run_of(system, run, 0.6);
+          const Vec<2> place = simulation.state().position(body) - at.origin;
+          constexpr double late = 5e-3;  // a step
+          EXPECT_GE(place.dot(at.direction(0.0, 1.0)), half - late);
+          EXPECT_LE(place.dot(at.direction(0.0, 1.0)), 0.5);
+          EXPECT_LE(std::abs(place.dot(at.direction(1.0, 0.0))), wide - half + late);
+        }
+      }
+    }
+  }
+}
+
+// The corner of the edge and the rear corner of the box both touch: not in one place, so that the rear one
+// has opened although the edge pushes, and takes no part in the impact. Both modes see the same impacts.
+TEST(FloorsOfPieces, ABoxThatTipsOverAnEdgeIsHitAsItStands) {
+  carom_test::Random random(1);
+  for (int scene = 0; scene < 20; ++scene) {
+    const double half = random.uniform(0.05, 0.15), high = random.uniform(0.5, 1.5) * half,
+                 speed = random.uniform(1.0, 3.0), beyond = random.uniform(0.1, 0.3) * half,
+                 gap = random.uniform(0.01, 0.05);
+    const auto end_of = [&](Schedule run) {
+      System system = empty({}, {.friction = 0.0, .normal_restitution = 0.1});
+      system.add(tile({}, -2.0, 0.0, 0.0, 1.0));
+      // The front one is off the edge when the rear one, twice as fast, meets it.
+      const double at = beyond - 2.0 * gap;
+      std::array<BodyId, 2> boxes{add_box(system, {}, at, half, high, 2.0 * speed),
+                                  add_box(system, {}, at + 2.0 * half + gap, half, high, speed)};
+      const Simulation simulation = run_of(system, run, gap / speed + 0.005);
+      return std::array{simulation.state().spin(boxes[0]), simulation.state().spin(boxes[1])};
+    };
+    const auto located = end_of(Schedule::located), events = end_of(Schedule::event_driven);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(located[i], events[i], 0.05 * speed) << scene;
+  }
+}
+
 // A real step, of 0.1 mm, is met: only what lies in one plane is a floor.
 TEST(FloorsOfPieces, AHigherTopIsAWall) {
   for (const Schedule run : runs) {

@@ -115,7 +115,8 @@ TEST(FeatureMargin, BeyondTheEndOfACapsuleIsTheEdgeOnTheSideOfTheVertex) {
 TEST(FeatureMargin, OfAFaceBetweenInnerCornersTheGapIsSmoothWithinIt) {
   const std::vector<Vec<2>> ends{{2.0, 0.0}, {0.0, 0.0}};  // free space is on the right of the face
   const std::vector<ChainCorner> corners{ChainCorner::concave, ChainCorner::concave};
-  const FaceChain floor{{ends, 0.0}, corners, false, 1.0, {}};
+  const std::array depths{1.0, 0.0};
+  const FaceChain floor{{ends, 0.0}, corners, false, depths, {}};
   constexpr Index face = 2;
   const auto margin = [&](const Vec<2>& at) { return floor.margin(face, at, Vec<2>::Zero()).value; };
   for (const Vec<2>& at : {Vec<2>(0.5, 0.3), Vec<2>(1.0, -0.9), Vec<2>(1.75, -0.2)}) {
