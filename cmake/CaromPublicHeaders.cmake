@@ -19,13 +19,13 @@ set(carom_public_headers
     contact/detection/ground_piece_shapes.h
     contact/detection/half_space.h
     contact/detection/prescribed_motion.h
-    contact/impact_rules.h
     contact/solvers/chain_statistics.h
     contact/solvers/contact_mode.h
     contact/solvers/contact_problem.h
     contact/solvers/contact_report.h
     contact/solvers/contact_solver.h
     contact/solvers/impact_order.h
+    contact/solvers/impact_rules.h
     contact/solvers/problem_file.h
     contact/solvers/residual.h
     contact/solvers/residual_history.h

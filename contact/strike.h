@@ -4,9 +4,9 @@
 /// One impact, in both modes: which law, which contacts, how much restitution, how much energy. What follows
 /// it (slow contacts that close, new neighbours, loads anew) is a loop of whoever strikes.
 
-#include <carom/contact/impact_rules.h>
 #include <carom/contact/impulse_map.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/impact_rules.h>
 #include <carom/contact/solvers/impact_solver.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>

@@ -4,6 +4,7 @@
 
 #include <carom/contact/solvers/exact_solvers.h>
 #include <carom/contact/solvers/large_problem_solver.h>
+#include <carom/contact/solvers/planar_certificate.h>
 #include <carom/contact/solvers/regular_counts.h>
 #include <carom/contact/solvers/single_contact.h>
 #include <carom/contact/solvers/warm_start.h>

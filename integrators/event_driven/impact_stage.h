@@ -5,8 +5,8 @@
 /// the capture speed close their contacts (accumulations).
 
 #include <carom/contact/active_set.h>
-#include <carom/contact/impact_rules.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/impact_rules.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/contact/strike.h>
 #include <carom/core/constraint.h>

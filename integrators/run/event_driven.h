@@ -3,7 +3,7 @@
 /// \file
 /// Options of the event-driven mode (docs/method.md, section 7).
 
-#include <carom/contact/impact_rules.h>
+#include <carom/contact/solvers/impact_rules.h>
 #include <carom/core/export.h>
 #include <carom/integrators/flow/flow_method.h>
 

@@ -3,7 +3,7 @@
 /// \file
 /// Options of the time-stepping mode (Johansson 1999, section 4).
 
-#include <carom/contact/impact_rules.h>
+#include <carom/contact/solvers/impact_rules.h>
 #include <carom/contact/solvers/sweep_budget.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/overlap_rules.h>

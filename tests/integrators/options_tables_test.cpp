@@ -27,7 +27,7 @@ struct Option {
 struct Nested {
   std::string member, header, name;
 };
-const std::vector<Nested> nested{{"impact_rules", "contact/impact_rules.h", "ImpactRules"},
+const std::vector<Nested> nested{{"impact_rules", "contact/solvers/impact_rules.h", "ImpactRules"},
                                  {"overlaps", "integrators/run/overlap_rules.h", "OverlapRules"}};
 
 /// Members of a struct of options, as its header declares them; `a.b` of those that stand together.

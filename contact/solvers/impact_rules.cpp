@@ -1,4 +1,4 @@
-#include <carom/contact/impact_rules.h>
+#include <carom/contact/solvers/impact_rules.h>
 
 #include <carom/core/errors.h>
 
