@@ -2,6 +2,7 @@
 
 #include <carom/contact/impact_restitution.h>
 #include <carom/contact/strike.h>
+#include <carom/core/part_check.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -89,8 +90,20 @@ double limit_gain(const IslandProblem& problem, std::span<Constraint> constraint
   return least;
 }
 
-Struck Strike::strike(std::vector<Constraint>& touching, const StrikeInput& in,
-                      FunctionRef<bool(IslandProblem&)> solve) {
+bool takes_part(const Constraint& constraint, const ImpactsOfMode& of_mode, bool follows_joint_force) {
+  if (constraint.type == ConstraintType::rolling || !constraint.has_dry_friction()) return true;
+  return of_mode.with_joint_friction && follows_joint_force;
+}
+
+ImpactOnset onset_of(double fastest, double noise, double capture_speed, int struck,
+                     const ImpactsOfMode& of_mode) {
+  if (!(fastest > noise)) return ImpactOnset::nothing;
+  if (fastest > capture_speed || struck > 0) return ImpactOnset::impact;
+  return of_mode.closes_slow ? ImpactOnset::closing : ImpactOnset::nothing;
+}
+
+Struck strike(std::vector<Constraint>& touching, const StrikeInput& in,
+              FunctionRef<StrikeAnswer(ImpactLaw)> solve) {
   Struck out;
   if (in.rules.order == ImpactOrder::sequential && !in.plastic) {
     out.cut_sequence = in.struck >= in.rules.sequence_limit;
@@ -109,18 +122,33 @@ Struck Strike::strike(std::vector<Constraint>& touching, const StrikeInput& in,
     out.outcome = Struck::Outcome::laws_differ;
     return out;
   }
-  IslandProblem& problem = *law == ImpactLaw::newton ? by_newton_ : by_other_law_;
-  if (*law != ImpactLaw::newton) problem.use(&solver_, *law);
-  out.problem = &problem;
-  bool solved = solve(problem);
+  const StrikeAnswer answer = solve(*law);
+  const IslandProblem& problem = answer.problem;
+  bool solved = answer.is_solved;
+  out.problem = &answer.problem;
   if (solved && in.rules.energy_gain == EnergyGain::limit && !plastic) {
-    const auto again = [&] { return solve(problem); };
+    const auto again = [&] { return solve(*law).is_solved; };
     out.restitution_factor = limit_gain(problem, touching, again);
     solved = problem.report().usable();
   }
   if (!solved) out.outcome = Struck::Outcome::not_solved;
   out.restitution_factor *= problem.restitution_factor();
   return out;
+}
+
+std::string impacts_without_end() {
+  return "impacts at one instant do not come to an end, more than " + std::to_string(most_impacts_at_once) +
+         " (restitution of 1, or unequal ones, where contacts hand on the motion)";
+}
+
+std::string hint_at_jams(const ImpactRules& rules, std::size_t constraints) {
+  if (!rules.refuse_jams || constraints < 2) return {};
+  return " (impact_rules.refuse_jams is set; use one e for surfaces between which a body jams)";
+}
+
+std::string gain_is_refused(const std::string& who, double gain) {
+  return who + " adds " + to_text(gain) +
+         " J; allowed: no gain (impact_rules.energy_gain is refuse; use e_n = e_t)";
 }
 
 }  // namespace carom

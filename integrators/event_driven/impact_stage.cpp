@@ -11,10 +11,6 @@ namespace carom {
 
 namespace {
 
-// Impacts of one instant: each takes energy out or hands it on, so that more than this do not happen but by
-// e = 1 in a corner.
-constexpr int most_impacts_at_once = 10000;
-
 // Closings of slow contacts at one instant. Each stops contacts that part slowly too; where contacts jam that
 // makes others approach, and so on. After these only what approaches is stopped, which ends.
 constexpr int most_closings_at_once = 16;
@@ -53,8 +49,10 @@ bool ImpactStage::resolve(EventInstant& at) {
     for (std::size_t island = 0; island < at.islands.size(); ++island) {
       const std::span<const Index> pairs = at.islands.pairs(island);
       const double fastest = fastest_approach(pairs, at);
-      if (!(fastest > at.scales.speed_noise)) continue;
-      resolve_island(pairs, fastest, counts[island], at);
+      const ImpactOnset onset = onset_of(fastest, at.scales.speed_noise, capture_speed(pairs, at),
+                                         counts[island].sequence, impacts_of_events);
+      if (onset == ImpactOnset::nothing) continue;
+      resolve_island(pairs, onset, counts[island], at);
       any = struck = true;
     }
     if (!any) return struck;
@@ -63,10 +61,7 @@ bool ImpactStage::resolve(EventInstant& at) {
   for (std::size_t i = 0; i < at.contacts.size(); ++i) {
     if (at.touches(i)) names.push_back(failure_->name(at.contacts[i]));
   }
-  failure_->fail("impacts at one instant do not come to an end, more than " +
-                     std::to_string(most_impacts_at_once) +
-                     " (restitution of 1, or unequal ones, where contacts hand on the motion)",
-                 std::move(names));
+  failure_->fail(impacts_without_end(), std::move(names));
 }
 
 void ImpactStage::settle(EventInstant& at) {
@@ -98,19 +93,18 @@ double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventIn
 }
 
 /// \param counts of the island at this instant before
-void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts,
+void ImpactStage::resolve_island(std::span<const Index> pairs, ImpactOnset onset, ImpactCounts& counts,
                                  EventInstant& at) {
   list_touching(pairs, at);
-  // The first impact of a sequence tells whether it is slow.
-  const bool captured = fastest <= capture_speed(pairs, at) && counts.sequence == 0;
+  const bool captured = onset == ImpactOnset::closing;
   captured ? add_captured(pairs, at) : leave_out_repeated(at.scales.gap_noise);
   const StrikeInput impact{.rules = rules_of(at),
                            .velocity = at.velocities(),
                            .speed_noise = at.scales.speed_noise,
                            .struck = counts.sequence,
                            .plastic = captured};
-  const auto by = [&](IslandProblem& problem) { return solve(problem, at); };
-  const Struck struck = memory_->strike.strike(memory_->touching, impact, by);
+  const auto by = [&](ImpactLaw law) { return solve(law, at); };
+  const Struck struck = strike(memory_->touching, impact, by);
   if (struck.outcome == Struck::Outcome::laws_differ)
     failure_->fail(laws_of_impact_differ, failure_->names(memory_->touching));
   const bool closes_slow = captured && counts.closings++ < most_closings_at_once;
@@ -128,11 +122,13 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, double fastest, I
 }
 
 /// False where there are no impulses, or none that stop what approaches.
-bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
+StrikeAnswer ImpactStage::solve(ImpactLaw law, EventInstant& at) {
+  IslandProblem& problem = memory_->problems.by(law);
   JointReactions& joints = at.motion.joints();
   joints.build(problem, memory_->touching, at.velocities());
   problem.set_free_velocity(at.velocities());
-  return joints.solve(problem, memory_->touching, at.now, memory_->chain) && stops(problem);
+  const bool is_solved = joints.solve(problem, memory_->touching, at.now, memory_->chain);
+  return {problem, is_solved && stops(problem)};
 }
 
 /// True if less than half is left of the approach: else impacts follow each other without end. Where bodies
@@ -141,7 +137,7 @@ bool ImpactStage::solve(IslandProblem& problem, EventInstant& at) {
 bool ImpactStage::stops(const IslandProblem& problem) {
   constexpr double most_left = 0.5;
   const ContactProblem& stated = problem.problem();
-  if (&problem != &memory_->strike.by_newton() || stated.groups().size() < 2) return true;
+  if (&problem != &memory_->problems.by(ImpactLaw::newton) || stated.groups().size() < 2) return true;
   std::vector<double>& xi = memory_->velocities_after;
   xi.resize(problem.impulses().size());
   stated.velocities(problem.impulses(), xi);
@@ -161,12 +157,8 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
   memory_->places.clear();
   for (const Index i : pairs) {
     if (!at.touches(i)) continue;
-    const bool rolling = at.contacts[i].type == ConstraintType::rolling;
-    // Friction in a joint that is bound by a constant has no impulse.
-    if (!rolling && at.contacts[i].has_dry_friction() &&
-        !at.motion.joints().depends_on_joint_force(at.contacts[i])) {
-      continue;
-    }
+    const bool follows_force = at.motion.joints().depends_on_joint_force(at.contacts[i]);
+    if (!takes_part(at.contacts[i], impacts_of_events, follows_force)) continue;
     Constraint& contact = touching.emplace_back(at.contacts[i]);
     memory_->places.push_back(i);
     contact.of_joint.friction_bound = 0.0;
@@ -203,10 +195,7 @@ void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant
   std::string what =
       "the contact problem of an impact is not solved (" + why + at.motion.model().driven() + ")";
   if (problem.report().outcome == Outcome::no_solution) what += "; " + fastest_of(touching, at.velocities());
-  if (rules_of(at).refuse_jams && touching.size() > 1) {
-    what += " (impact_rules.refuse_jams is set; use one e for surfaces between which a body jams)";
-  }
-  failure_->fail(what, failure_->names(touching), &problem);
+  failure_->fail(what + hint_at_jams(rules_of(at), touching.size()), failure_->names(touching), &problem);
 }
 
 /// Which contact approaches fastest, for messages: "... approaches at 0.1 m/s, ...".
@@ -239,7 +228,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
     if (problem.map().impulse(c, 0) > 0.0) accumulation_.remember(at.time, contact.key);
   }
   if (gain == 0.0 || rules_of(at).energy_gain != EnergyGain::refuse) return;
-  failure_->fail("an impact adds " + to_text(gain) + " J, which impact_rules.energy_gain forbids",
+  failure_->fail(gain_is_refused("an impact", gain),
                  failure_->names({problem.constraints().begin(), problem.constraints().end()}), &problem);
 }
 

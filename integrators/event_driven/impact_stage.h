@@ -42,10 +42,10 @@ struct ImpactCounts {
 struct ImpactMemory {
   /// \param solvers must outlive it
   ImpactMemory(const ImpactRules& rules, SolverChain& solvers)
-      : chain(solvers), strike(options_of_impacts(rules)) {}
+      : chain(solvers), problems(options_of_impacts(rules)) {}
 
   SolverChain& chain;
-  Strike strike;
+  ImpactProblems problems;
   std::vector<Constraint> touching;  ///< constraints of the problem,
   std::vector<Index> places;         ///< and their pairs, as long as all of these are in it
   std::vector<ActiveContact> captured;
@@ -85,8 +85,9 @@ public:
 
 private:
   [[nodiscard]] double fastest_approach(std::span<const Index> pairs, const EventInstant& at) const;
-  void resolve_island(std::span<const Index> pairs, double fastest, ImpactCounts& counts, EventInstant& at);
-  [[nodiscard]] bool solve(IslandProblem& problem, EventInstant& at);
+  void resolve_island(std::span<const Index> pairs, ImpactOnset onset, ImpactCounts& counts,
+                      EventInstant& at);
+  [[nodiscard]] StrikeAnswer solve(ImpactLaw law, EventInstant& at);
   [[nodiscard]] bool stops(const IslandProblem& problem);
   void list_touching(std::span<const Index> pairs, const EventInstant& at);
   void leave_out_repeated(double gap_noise);

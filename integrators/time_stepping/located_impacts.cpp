@@ -68,7 +68,7 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
       on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
       of_one_piece_(detector.pieces().empty() && detector.joints().empty()),
       rules_{options.most_impacts, CaptureRule::of(assembly, options), gap_rounding(assembly, options),
-             turning_rounding(options), options.impact_rules.refuse_jams},
+             turning_rounding(options), options.impact_rules},
       budget_(budget_of(options)) {}
 
 std::size_t LocatedImpacts::place(Index body) const {

@@ -1,5 +1,6 @@
 // Problem: a step of one body that is hit at instants within it.
 
+#include <carom/contact/strike.h>
 #include <carom/core/dynamics/body_response.h>
 #include <carom/integrators/time_stepping/kept_names.h>
 #include <carom/integrators/time_stepping/located_motion.h>
@@ -117,7 +118,7 @@ bool LocatedMotion::move(const LocatedBody& at) {
 /// A phase from where the body is, without contacts.
 MotionPhase& LocatedMotion::add_phase(const LocatedBody& at, double begin, double end) {
   if (used_ == phases_.size())
-    phases_.emplace_back().problem = IslandProblem({.plastic_jams = !at.rules.refuse_jams});
+    phases_.emplace_back().problem = IslandProblem({.plastic_jams = !at.rules.impacts.refuse_jams});
   MotionPhase& phase = phases_[used_++];
   phase.begin = begin;
   phase.end = end;
@@ -319,10 +320,9 @@ bool LocatedMotion::strike(const LocatedBody& at, double share, bool fast) {
     return contact.gap > at.rules.gap &&
            std::find(parted_.begin(), parted_.end(), contact.key) != parted_.end();
   });
-  if (!fast) {
-    for (Constraint& contact : hit.constraints) contact.remove_restitution();
-  }
-  if (!solve(at, hit)) return false;
+  const StrikeInput impact{.rules = at.rules.impacts, .velocity = at.trial.end.v.data(), .plastic = !fast};
+  const auto by = [&](ImpactLaw) { return StrikeAnswer{hit.problem, solve(at, hit)}; };
+  if (carom::strike(hit.constraints, impact, by).outcome != Struck::Outcome::solved) return false;
   const Range v{at.slot.v, at.slot.v + at.slot.v_size};
   for (Index i = v.begin; i < v.end; ++i) {
     hit.v1[i - v.begin] = at.trial.end.v[i] + at.trial.dv_impulses[i];

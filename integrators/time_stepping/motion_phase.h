@@ -5,6 +5,7 @@
 
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/solvers/impact_rules.h>
 #include <carom/core/body_kind.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/capture_rule.h>
@@ -80,7 +81,7 @@ struct LocatedRules {
   CaptureRule capture;  ///< which contacts do not rebound
   double gap;           ///< gap_rounding() [m]
   double turning;       ///< turning_rounding() [m]
-  bool refuse_jams;     ///< contacts that jam are an error
+  ImpactRules impacts;  ///< how they are resolved
 };
 
 /// A step that bodies are moved through.

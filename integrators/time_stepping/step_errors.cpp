@@ -1,6 +1,7 @@
 // Problem: say what went wrong in a step, with names, and what would help.
 
 #include <carom/contact/pressed_bodies.h>
+#include <carom/contact/strike.h>
 #include <carom/core/dynamics/prescribed_joints.h>
 #include <carom/core/listed.h>
 #include <carom/core/run_error.h>
@@ -193,13 +194,7 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
     message += ", residual " + to_text(problem.report().residual) +
                driven_by(in_.assembly, components_of(in_.assembly, problem)) +
                pressed_by(system(), problem.constraints()) + carried_by(system(), problem.constraints()) +
-               uneven_masses(problem);
-    if (options_.impact_rules.refuse_jams && problem.constraints().size() > 1) {
-      message +=
-          "; allowed: contacts with an answer (impact_rules.refuse_jams is set; use one e for surfaces "
-          "between which a "
-          "body jams)";
-    }
+               uneven_masses(problem) + hint_at_jams(options_.impact_rules, problem.constraints().size());
   }
   fail(message, failure);
 }
@@ -251,16 +246,14 @@ void StepErrors::fail_projection(const Constraint& left) const {
        failure);
 }
 
-void StepErrors::fail_impacts(const IslandProblem& problem, const char* what) const {
+void StepErrors::fail_impacts(const IslandProblem& problem, const std::string& what) const {
   SolverFailure failure = failure_of(problem);
-  fail(what + ("; of " + contacts_of(problem, failure)), failure);
+  fail(what + "; of " + contacts_of(problem, failure), failure);
 }
 
 void StepErrors::refuse_gain(const IslandProblem& problem, double gain) const {
   SolverFailure failure = failure_of(problem);
-  fail("contact of " + listed(failure.parts) + " adds " + to_text(gain) +
-           " J; allowed: no gain (impact_rules.energy_gain is refuse; use e_n = e_t)",
-       failure);
+  fail(gain_is_refused("contact of " + listed(failure.parts), gain), failure);
 }
 
 }  // namespace carom

@@ -67,7 +67,7 @@ public:
   /// A gap cannot be opened.
   [[noreturn]] void fail_projection(const Constraint& left) const;
   /// Impacts at the start of the step that cannot be resolved. \param what why
-  [[noreturn]] void fail_impacts(const IslandProblem& problem, const char* what) const;
+  [[noreturn]] void fail_impacts(const IslandProblem& problem, const std::string& what) const;
   /// An impact adds energy [J], which is refused.
   [[noreturn]] void refuse_gain(const IslandProblem& problem, double gain) const;
 

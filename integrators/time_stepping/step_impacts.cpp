@@ -11,8 +11,6 @@ namespace {
 
 // Speeds below this part of the largest are rounding: answers of contact problems are certified to 1e-12.
 constexpr double speed_rounding = 1e-12;
-// Impacts of one island in one step: more do not happen but by e = 1 in a corner.
-constexpr int most_impacts_at_once = 10000;
 
 /// Large ones are left to sweeps, but for laws whose solver needs W in full.
 IslandOptions options_of_impacts(const StepParts& parts) {
@@ -31,7 +29,7 @@ StepImpacts::StepImpacts(StepParts& parts)
           has_other_impact_law(parts.constraints.detector())),
       capture_(CaptureRule::of(*parts.assembly, parts.options)),
       balance_(*parts.assembly, parts.options),
-      strike_(options_of_impacts(parts)),
+      problems_(options_of_impacts(parts)),
       response_(*parts.assembly) {
   if (!on_) return;
   chain_.set_budget(budget_of(parts.options));
@@ -50,7 +48,7 @@ bool StepImpacts::resolve(const StepInput& in) {
   for (const StepIsland& island : parts_->constraints.islands()) {
     contacts_.clear();
     for (const Constraint& constraint : island.constraints) {
-      if (constraint.has_dry_friction() && constraint.type != ConstraintType::rolling) continue;
+      if (!takes_part(constraint, impacts_of_steps, false)) continue;
       Constraint& contact = contacts_.emplace_back(constraint);
       contact.surface_velocity_after = contact.surface_velocity;
       contact.allowed_approach = 0.0;
@@ -115,21 +113,20 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     any_cut = any_cut || is_noted(notes.cut, false, contact, start_.v.data());
   }
   for (int round = 0; round < most_impacts_at_once; ++round) {
-    const bool any_slow = round > 0 ? sequential : any_free || any_cut;
-    const double least = any_slow ? noise : std::max(noise, options.capture_speed);
-    if (!(fastest(contacts) > least)) return;
+    const double slow = round == 0 && (any_free || any_cut) ? 0.0 : options.capture_speed;
+    const int of_sequence = sequential ? round : 0;
+    if (onset_of(fastest(contacts), noise, slow, of_sequence, impacts_of_steps) == ImpactOnset::nothing)
+      return;
     touching_.assign(contacts.begin(), contacts.end());
     const StrikeInput impact{.rules = options.impact_rules,
                              .velocity = start_.v.data(),
                              .speed_noise = noise,
                              .struck = round,
                              .plastic = any_cut};
-    const auto by = [&](IslandProblem& problem) { return solve(problem); };
-    const Struck struck = strike_.strike(touching_, impact, by);
-    if (struck.outcome == Struck::Outcome::laws_differ) {
-      static_cast<void>(solve(strike_.by_newton()));
-      errors(in).fail_impacts(strike_.by_newton(), laws_of_impact_differ);
-    }
+    const auto by = [this](ImpactLaw law) { return solve(law); };
+    const Struck struck = strike(touching_, impact, by);
+    if (struck.outcome == Struck::Outcome::laws_differ)
+      errors(in).fail_impacts(solve(ImpactLaw::newton).problem, laws_of_impact_differ);
     if (struck.outcome == Struck::Outcome::not_solved) errors(in).fail_contact(*struck.problem);
     ImpactNote note;
     note.cut_sequence = any_cut || struck.cut_sequence;
@@ -137,7 +134,7 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     apply(in, note, *struck.problem);
     if (note.cut_sequence) return;
   }
-  errors(in).fail_impacts(strike_.by_newton(), "impacts do not come to an end");
+  errors(in).fail_impacts(problems_.by(ImpactLaw::newton), impacts_without_end());
 }
 
 /// Errors of the component of an impact.
@@ -146,11 +143,12 @@ StepErrors StepImpacts::errors(const StepInput& in) {
 }
 
 /// States and solves the impact of the contacts listed.
-bool StepImpacts::solve(IslandProblem& problem) {
+StrikeAnswer StepImpacts::solve(ImpactLaw law) {
+  IslandProblem& problem = problems_.by(law);
   problem.build(touching_, start_.v.data());
   problem.respond(response_);
   problem.set_free_velocity(start_.v.data());
-  return problem.solve(chain_).usable();
+  return {problem, problem.solve(chain_).usable()};
 }
 
 double StepImpacts::kinetic_energy(const StepInput& in) const {

@@ -5,7 +5,7 @@
 /// or their energy is limited, or nothing may pass through anything: what closes faster than the capture
 /// speed is resolved at the velocities v_j, as in the event-driven mode; the step follows from the velocities
 /// after it, and its contacts have e = 0. A contact that closes more slowly does not rebound, unless it is
-/// located and nothing presses it (ClosingNotes). Friction in joints takes no part in these impacts.
+/// located and nothing presses it (ClosingNotes). Which constraints take part: impacts_of_steps.
 
 #include <carom/contact/island_partition.h>
 #include <carom/contact/island_problem.h>
@@ -51,7 +51,7 @@ private:
                               const double* v) const;
   void resolve_island(const StepInput& in, std::span<const Constraint> contacts);
   [[nodiscard]] double fastest(std::span<const Constraint> contacts) const;
-  [[nodiscard]] bool solve(IslandProblem& problem);
+  [[nodiscard]] StrikeAnswer solve(ImpactLaw law);
   [[nodiscard]] StepErrors errors(const StepInput& in);
   void place_joints(const StepInput& in);
   void apply(const StepInput& in, const ImpactNote& note, const IslandProblem& problem);
@@ -63,7 +63,7 @@ private:
   State start_;
   StepBalance balance_;
   IslandPartition partition_;
-  Strike strike_;
+  ImpactProblems problems_;
   SolverChain chain_;
   std::vector<JointConstraints> joints_;
   std::vector<JointConstraints*> list_;  // of them

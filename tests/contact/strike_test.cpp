@@ -27,8 +27,11 @@ struct Blow {
                          .struck = struck,
                          .plastic = plastic};
     const std::array<double, 3> before = velocity;
-    const auto by = [&](IslandProblem& problem) { return body.solve(problem, touching, before); };
-    const Struck out = striker.strike(touching, in, by);
+    const auto by = [&](ImpactLaw law) {
+      IslandProblem& problem = problems.by(law);
+      return StrikeAnswer{problem, body.solve(problem, touching, before)};
+    };
+    const Struck out = carom::strike(touching, in, by);
     if (out.problem != nullptr) {
       gain = body.gain(*out.problem, before);
       out.problem->map().add_velocities(velocity.data());
@@ -39,7 +42,7 @@ struct Blow {
   TouchingBody body;
   std::array<double, 3> velocity;  ///< (v_x, v_y, omega)
   std::vector<Constraint> touching;
-  Strike striker{IslandOptions{.plastic_jams = true}};
+  ImpactProblems problems{IslandOptions{.plastic_jams = true}};
   double gain = 0.0;  ///< of kinetic energy by the last one [J]
 };
 
@@ -90,7 +93,7 @@ TEST(Strike, PlasticOnesTakeAllContactsWhateverTheRulesAndLaws) {
   const Struck struck = blow.strike(rules, 0, true);
   ASSERT_EQ(struck.outcome, Struck::Outcome::solved);
   EXPECT_FALSE(struck.cut_sequence);
-  EXPECT_EQ(struck.problem, &blow.striker.by_newton());
+  EXPECT_EQ(struck.problem, &blow.problems.by(ImpactLaw::newton));
   EXPECT_NEAR(blow.velocity[0], 0.0, rounding);
   EXPECT_NEAR(blow.velocity[1], 0.0, rounding);
 }
@@ -109,7 +112,7 @@ TEST(Strike, OtherLawsHaveTheirSolver) {
   Blow blow(corner(poisson, poisson), {-1.0, -2.0, 0.0});
   const Struck struck = blow.strike({});
   ASSERT_EQ(struck.outcome, Struck::Outcome::solved);
-  EXPECT_NE(struck.problem, &blow.striker.by_newton());
+  EXPECT_NE(struck.problem, &blow.problems.by(ImpactLaw::newton));
   EXPECT_NEAR(blow.velocity[0], 0.5, rounding);
   EXPECT_NEAR(blow.velocity[1], 1.0, rounding);
 }
@@ -138,13 +141,41 @@ TEST(Strike, WhatJamsIsNotSolvedWhereJamsAreRefused) {
   const std::vector<Touch> corridor{{{0.0, 0.0}, {0.0, 1.0}, smooth(0.5)},
                                     {{0.0, 0.0}, {0.0, -1.0}, smooth(0.2)}};
   Blow refused(corridor, {1.0, -1.0, 0.0});
-  refused.striker = Strike(IslandOptions{.plastic_jams = false});
+  refused.problems = ImpactProblems(IslandOptions{.plastic_jams = false});
   EXPECT_EQ(refused.strike({}).outcome, Struck::Outcome::not_solved);
   Blow jammed(corridor, {1.0, -1.0, 0.0});
   const Struck struck = jammed.strike({});
   EXPECT_EQ(struck.outcome, Struck::Outcome::solved);
   EXPECT_EQ(struck.restitution_factor, 0.0);
   EXPECT_NEAR(jammed.velocity[1], 0.0, rounding);
+  EXPECT_EQ(hint_at_jams({}, 2), "");
+  EXPECT_EQ(hint_at_jams({.refuse_jams = true}, 1), "");
+  EXPECT_NE(hint_at_jams({.refuse_jams = true}, 2), "");
+}
+
+TEST(Strike, StepsLeaveSlowContactsAndEventsCloseThem) {
+  constexpr double noise = 1e-12, capture = 1e-3;
+  for (const ImpactsOfMode& mode : {impacts_of_steps, impacts_of_events}) {
+    EXPECT_EQ(onset_of(noise, noise, capture, 0, mode), ImpactOnset::nothing);
+    EXPECT_EQ(onset_of(2.0 * capture, noise, capture, 0, mode), ImpactOnset::impact);
+    EXPECT_EQ(onset_of(capture, noise, capture, 1, mode), ImpactOnset::impact) << "a sequence has begun";
+    EXPECT_EQ(onset_of(capture, noise, 0.0, 0, mode), ImpactOnset::impact) << "none is slow";
+  }
+  EXPECT_EQ(onset_of(capture, noise, capture, 0, impacts_of_steps), ImpactOnset::nothing);
+  EXPECT_EQ(onset_of(capture, noise, capture, 0, impacts_of_events), ImpactOnset::closing);
+}
+
+TEST(Strike, FrictionInJointsTakesPartInEventsWhereItFollowsForces) {
+  Constraint contact, friction, rolling;
+  friction.type = ConstraintType::joint_friction;
+  rolling.type = ConstraintType::rolling;
+  for (const ImpactsOfMode& mode : {impacts_of_steps, impacts_of_events}) {
+    EXPECT_TRUE(takes_part(contact, mode, false));
+    EXPECT_TRUE(takes_part(rolling, mode, false));
+    EXPECT_FALSE(takes_part(friction, mode, false));
+  }
+  EXPECT_FALSE(takes_part(friction, impacts_of_steps, true));
+  EXPECT_TRUE(takes_part(friction, impacts_of_events, true));
 }
 
 }  // namespace
