@@ -1,9 +1,11 @@
 // Problem: a state of time stepping that the event-driven mode accepts.
 
+#include <carom/contact/assembly_gaps.h>
 #include <carom/contact/detection/contact_look.h>
 #include <carom/contact/detection/rolling_resistance.h>
 #include <carom/contact/island_partition.h>
 #include <carom/contact/island_problem.h>
+#include <carom/contact/separation.h>
 #include <carom/core/dynamics/answering_bodies.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_closure.h>
@@ -11,7 +13,6 @@
 #include <carom/core/listed.h>
 #include <carom/integrators/event_driven/event_balance.h>
 #include <carom/integrators/mode_switch.h>
-#include <carom/integrators/time_stepping/gap_projection.h>
 
 #include <algorithm>
 #include <string>
@@ -22,7 +23,7 @@ namespace carom {
 namespace {
 
 /// Names all contacts that leave no room between them, the deepest first.
-[[noreturn]] void fail_wedged(const Detector& detector, const GapProjection::Result& result, double time) {
+[[noreturn]] void fail_wedged(const Detector& detector, const Separation& result, double time) {
   std::vector<Constraint> contacts(result.together.begin(), result.together.end());
   std::stable_sort(contacts.begin(), contacts.end(),
                    [](const Constraint& a, const Constraint& b) { return a.gap < b.gap; });
@@ -88,7 +89,7 @@ Gaps gaps_within(double reach, ContactLook& look, const State& state) {
 /// Drops the modes of contacts that a displacement has opened: they are closed no more, though they were in
 /// the step before.
 void forget_opened(const Assembly& assembly, const Detector& detector, const State& before,
-                   const State& after, const GapProjection::Result& result, Companion& companion) {
+                   const State& after, const Separation& result, Companion& companion) {
   // Both bodies of a contact are moved, and turned.
   const double reach = 4.0 * result.shift;
   ContactLook look(assembly, detector);
@@ -117,9 +118,8 @@ void book(const StoredEnergies& stored, const ChainStatistics& solved, std::size
 }
 
 /// Moves bodies out of all shapes on ground, for out of one they may come into another, and apart.
-GapProjection::Result move_apart(const Assembly& assembly, const Detector& detector,
-                                 const GroundPlaces& places, SolverChain& chain, State& trial,
-                                 Evaluation& evaluation) {
+Separation move_apart(const Assembly& assembly, const Detector& detector, const GroundPlaces& places,
+                      SolverChain& chain, State& trial, Evaluation& evaluation) {
   const auto components = static_cast<Index>(assembly.components().size());
   if (components == 0) return {};
   std::vector<JointConstraints> joints;
@@ -127,12 +127,18 @@ GapProjection::Result move_apart(const Assembly& assembly, const Detector& detec
     append_constraints(assembly, component, joints);
   }
   const std::vector<JointConstraints*> bound = addresses_of(joints);
-  GapProjection projection;
-  GapProjection::Result result =
-      projection.project({assembly, detector, places, {0, components}, bound},
-                         {.all = true, .of_bodies = detector.bodies_touch()}, chain, trial, evaluation);
+  AssemblyGaps gaps;
+  gaps.bind({.assembly = assembly,
+             .detector = detector,
+             .places = places,
+             .components = {0, components},
+             .joints = bound,
+             .all = true,
+             .touch = detector.bodies_touch()},
+            trial, evaluation);
+  Separation result = Separator().separate(gaps, chain);
   if (result.left != nullptr) fail_wedged(detector, result, trial.time);
-  result.together = {};  // of the projection, which ends here
+  result.together = {};  // of the gaps, which end here
   return result;
 }
 
@@ -173,7 +179,7 @@ void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& st
       apply(assembly, problem, trial, balance);
     }
   }
-  const GapProjection::Result moved = move_apart(assembly, detector, places, chain, trial, evaluation);
+  const Separation moved = move_apart(assembly, detector, places, chain, trial, evaluation);
   // Where bodies were moved their joints stand elsewhere.
   const double shift = std::max(moved.shift, close_joints(assembly, trial).shift);
   driver.demand_start(trial);

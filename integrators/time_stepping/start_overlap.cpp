@@ -1,10 +1,11 @@
 // Problem: begin a run with bodies side by side, or say by name which are not.
 
+#include <carom/contact/assembly_gaps.h>
 #include <carom/contact/detection/contact_look.h>
+#include <carom/contact/separation.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/errors.h>
-#include <carom/integrators/time_stepping/gap_projection.h>
 #include <carom/integrators/time_stepping/start_overlap.h>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ void demand_depth(const Assembly& assembly, const Detector& detector, const Stat
 }
 
 /// Moves all bodies by the least displacement.
-double separate(const Assembly& assembly, const Detector& detector, State& state) {
+double separate_all(const Assembly& assembly, const Detector& detector, State& state) {
   const auto components = static_cast<Index>(assembly.components().size());
   std::vector<JointConstraints> joints;
   for (Index component = 0; component < components; ++component) {
@@ -42,11 +43,17 @@ double separate(const Assembly& assembly, const Detector& detector, State& state
   Evaluation evaluation = make_evaluation(assembly);
   evaluate_positions(assembly, state.view(), evaluation);
   const std::vector<JointConstraints*> bound = addresses_of(joints);
-  GapProjection projection;
+  AssemblyGaps gaps;
+  gaps.bind({.assembly = assembly,
+             .detector = detector,
+             .places = places,
+             .components = {0, components},
+             .joints = bound,
+             .all = true,
+             .touch = detector.bodies_touch()},
+            state, evaluation);
   SolverChain chain;
-  const GapProjection::Result result =
-      projection.project({assembly, detector, places, {0, components}, bound},
-                         {.all = true, .of_bodies = detector.bodies_touch()}, chain, state, evaluation);
+  const Separation result = Separator().separate(gaps, chain);
   if (result.left != nullptr) {
     throw ModelError("time stepping: overlaps.separate_at_start: no displacement brings " +
                      detector.name(result.left->key) + " apart, gap " + to_text(result.left->gap) +
@@ -67,7 +74,7 @@ double prepare_overlaps(const Assembly& assembly, const Detector& detector, cons
     return 0.0;
   }
   State trial = state;
-  const double shift = separate(assembly, detector, trial);
+  const double shift = separate_all(assembly, detector, trial);
   state = std::move(trial);
   return shift;
 }

@@ -123,7 +123,7 @@ void StepBalance::book_turning(double work) {
   coupling_work_.add(work);
 }
 
-void StepBalance::book_projection(const GapProjection::Result& result, const StoredEnergies& before,
+void StepBalance::book_projection(const Separation& result, const StoredEnergies& before,
                                   const StoredEnergies& after) {
   result_.report.projected = std::max(result_.report.projected, result.shift);
   energy_position_projection_ += before.potential() - after.potential();

@@ -6,6 +6,7 @@
 
 #include <carom/contact/island_problem.h>
 #include <carom/contact/lone_contacts.h>
+#include <carom/contact/separation.h>
 #include <carom/core/energy_ledger.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
@@ -17,7 +18,6 @@
 #include <carom/integrators/run/iteration_memory.h>
 #include <carom/integrators/run/step_report.h>
 #include <carom/integrators/run/time_stepping.h>
-#include <carom/integrators/time_stepping/gap_projection.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_rule.h>
@@ -111,8 +111,7 @@ public:
   void book_turning(double work);
   /// Books that bodies were moved out of ground shapes. \param before potentials of their component before it
   /// \param after likewise
-  void book_projection(const GapProjection::Result& result, const StoredEnergies& before,
-                       const StoredEnergies& after);
+  void book_projection(const Separation& result, const StoredEnergies& before, const StoredEnergies& after);
   /// Books a change of kinetic energy by bringing velocities back onto joints. \param lost [J]
   void book_velocity_projection(double lost);
 

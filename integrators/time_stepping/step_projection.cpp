@@ -101,10 +101,15 @@ void StepProjection::project(const Part& part, const StepInput& in, StepBalance&
   const StoredEnergies before = potentials(part.components);
   // Components that contacts join need not follow one another.
   const Range components{part.components.front(), part.components.back() + 1};
-  const GapProjection::Result result = projection_.project(
-      {assembly, parts_->constraints.detector(), parts_->constraints.places(true), components, joints_},
-      {.taking_part = part.constraints, .of_bodies = part.joined}, parts_->contacts.chain(), trial.end,
-      trial.at_end);
+  gaps_.bind({.assembly = assembly,
+              .detector = parts_->constraints.detector(),
+              .places = parts_->constraints.places(true),
+              .components = components,
+              .joints = joints_,
+              .taking_part = part.constraints,
+              .touch = part.joined},
+             trial.end, trial.at_end);
+  const Separation result = separator_.separate(gaps_, parts_->contacts.chain());
   if (result.left != nullptr) parts_->errors(in, part.components.front()).fail_projection(*result.left);
   if (!result.moved) return;
   moved_.insert(moved_.end(), part.components.begin(), part.components.end());

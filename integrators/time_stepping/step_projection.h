@@ -9,12 +9,13 @@
 /// projection lifts it by d, against these loads. If it came back at e w, it would bounce with what it was
 /// lifted by, for ever with e near 1; it comes back at e w0.
 
+#include <carom/contact/assembly_gaps.h>
+#include <carom/contact/separation.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/energy_term.h>
 #include <carom/core/export.h>
-#include <carom/integrators/time_stepping/gap_projection.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>
@@ -55,7 +56,8 @@ private:
   [[nodiscard]] StoredEnergies potentials(std::span<const Index> components);
 
   StepParts* parts_;
-  GapProjection projection_;
+  AssemblyGaps gaps_;
+  Separator separator_;
   std::vector<Index> moved_;  // components, in the step at hand,
   std::vector<double> came_;  // and where they came without that, by coordinate
   std::vector<JointConstraints*> joints_;

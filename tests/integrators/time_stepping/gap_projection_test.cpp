@@ -6,7 +6,6 @@
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/integrators/run/companion.h>
-#include <carom/integrators/time_stepping/gap_projection.h>
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,72 @@
+#pragma once
+
+/// \file
+/// Gaps of the bodies of an assembled model, which its joints bind (gap_source.h).
+
+#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/gap_source.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/components_response.h>
+#include <carom/core/dynamics/joint_constraints.h>
+#include <carom/core/export.h>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace carom {
+
+/// Bodies that may be moved, how they answer, and the gaps that are to be opened.
+struct MovableBodies {
+  const Assembly& assembly;
+  const Detector& detector;
+  const GroundPlaces& places;  ///< shapes on ground, at the time of the state
+  Range components;            ///< consecutive; with contacts of bodies all that these may touch
+  /// Joints of those components that have some, ascending.
+  std::span<JointConstraints* const> joints{};
+  std::span<const Constraint> taking_part{};  ///< contacts whose gaps are to be opened,
+  bool all = false;                           ///< or those of all, which a displacement closes included
+  bool touch = false;                         ///< contacts of bodies with each other take part
+};
+
+/// Their gaps. Keeps memory.
+class CAROM_API AssemblyGaps final : public GapSource {
+public:
+  /// Takes bodies and where they are. The state and the position group of `evaluation`, up to date now,
+  /// follow what is moved; all must outlive the calls that follow.
+  void bind(const MovableBodies& bodies, State& state, Evaluation& evaluation);
+
+  [[nodiscard]] std::span<Constraint> find(double margin) override;
+  [[nodiscard]] Index bodies() const override;
+  [[nodiscard]] Index first_together(Index body) const override;
+  [[nodiscard]] Range velocities() const override;
+  [[nodiscard]] const std::vector<double>& lengths() const override { return lengths_; }
+  [[nodiscard]] double rounding() const override;
+  void begin() override;
+  [[nodiscard]] std::span<const Range> select(std::span<const Constraint> contacts) override;
+  [[nodiscard]] BodyResponse& response() override;
+  void move(const double* displacement) override;
+  void update() override;
+  [[nodiscard]] bool is_off(double depth) override;
+  void close_joints(const double* displacement, double* sum) override;
+
+private:
+  void select(Index body);
+
+  std::optional<MovableBodies> bodies_;
+  State* state_ = nullptr;
+  Evaluation* evaluation_ = nullptr;
+  std::optional<ComponentsResponse> response_;
+  BodyContactSearch search_;
+  std::vector<Constraint> contacts_;
+  std::vector<ConstraintKey> wanted_;          // contacts that take part, ascending
+  std::vector<double> unmoved_;                // q from which displacements are
+  std::vector<double> lengths_;                // of the assembly
+  std::vector<Index> at_hand_;                 // bodies, ascending
+  std::vector<Range> velocities_;              // theirs
+  std::vector<JointConstraints*> mechanisms_;  // their joints, ascending
+  std::vector<double> moved_, rows_;
+};
+
+}  // namespace carom
