@@ -1,39 +1,68 @@
 #pragma once
 
 /// \file
-/// Projection of a state onto the constraints of joints and closed contacts, by the smallest change in the
-/// sense of the masses.
+/// Joints and contacts that last are closed: gaps = 0, and velocities along rows = 0, by the smallest change
+/// in the sense of the masses:
+///     minimise |d|_M  such that  G d = -g(q),        minimise |u|_M  such that  G (v + u) = 0,
+/// for the rows G of joints and of closed contacts; of those that stick the tangential row too, on velocity
+/// level alone, since they have no place of their own. What is linearised leaves the square of an error.
 
+#include <carom/contact/active_set.h>
+#include <carom/core/assembly.h>
+#include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
-#include <carom/integrators/event_driven/motion_sample.h>
-#include <carom/integrators/event_driven/smooth_motion.h>
+#include <carom/core/function_ref.h>
+#include <carom/core/state.h>
 
 #include <span>
-#include <string>
 #include <vector>
 
 namespace carom {
 
-/// Result of a projection.
-struct ConstraintProjection {
-  bool changed = false;  ///< the state was
-  double lost = 0.0;     ///< energy taken out [J]
-  /// Kinetic energy of the change of velocities [J]: positive, and what it took where nothing is prescribed.
-  double velocity_energy = 0.0;
-  double shift = 0.0;  ///< largest displacement [m]
+/// What is to be closed, and where it stands.
+struct ClosureInput {
+  const Assembly& assembly;
+  std::span<const Index> components;          ///< those that may move, ascending
+  std::span<JointConstraints* const> joints;  ///< of those that have some; factored at the state
+  ActiveSet& contacts;                        ///< closed ones with their modes, brought to the state
+  StateView state;                            ///< q and v of the model
+  const double* force = nullptr;              ///< loads over all velocities there [N, N m]
 };
 
-/// Finds the smallest changes that take a sample onto the constraints: MotionMemory::of_position and
-/// of_velocity. False where there is nothing to change. \param at the sample that the motion made last
-[[nodiscard]] CAROM_API bool find_corrections(SmoothMotion& motion, const MotionSample& at);
+/// What a closure changed.
+struct Closure {
+  bool changed = false;  ///< anything
+  /// Energy taken out [J]; the potential changes by minus the work of its forces, to first order: the rest is
+  /// the square of rounding.
+  double lost = 0.0;
+  /// Kinetic energy of the change of velocities [J]: positive, and what it took where nothing is prescribed.
+  double velocity_energy = 0.0;
+  double shift = 0.0;  ///< largest displacement, angles weighed by a length [m]
+};
 
-/// Projects y. \param at the sample of y that the motion made last; it is out of date if y was changed
-CAROM_API ConstraintProjection project_onto_constraints(SmoothMotion& motion, const MotionSample& at,
-                                                        std::span<double> y);
+/// Arrays over all velocities of a model.
+struct CAROM_API ClosureMemory {
+  explicit ClosureMemory(const Assembly& assembly);
 
-/// Names of the joints that change the velocities of a sample most in a projection, else of the closed
-/// contacts. \param at the sample that the motion made last
-[[nodiscard]] CAROM_API std::vector<std::string> causes_of_projection(SmoothMotion& motion,
-                                                                      const MotionSample& at);
+  std::vector<double> of_position;  ///< changes that close all: of places [m, rad],
+  std::vector<double> of_velocity;  ///< of velocities [m/s, rad/s]
+  std::vector<double> momentum;     ///< M times these
+  std::vector<double> lengths;      ///< Assembly::length_scales()
+  std::vector<double> rates;        ///< of the rows of joints
+};
+
+/// Finds the changes that close all: `memory` has them then. False where nothing is to be closed.
+[[nodiscard]] CAROM_API bool find_closure(const ClosureInput& in, ClosureMemory& memory);
+
+/// Where the first coordinate and the first velocity of a component are written.
+struct ClosedPlace {
+  double* q = nullptr;
+  double* v = nullptr;
+};
+
+/// Finds the changes that close all, and writes the state with them; nothing where nothing changes.
+/// \param place_of tells where a component is written
+CAROM_API Closure close(const ClosureInput& in, FunctionRef<ClosedPlace(Index)> place_of,
+                        ClosureMemory& memory);
 
 }  // namespace carom

@@ -79,7 +79,7 @@ void resolve_event(GroupParts& group, EventBalance& balance) {
     demand_apart(at, group.failure);
   }
   at.find_touch_gap(starts);
-  if (starts && !group.motion.active().list().empty()) group.projection.apply_to_known_contacts(at);
+  if (starts && !group.motion.active().list().empty()) group.closure.apply_to_known_contacts(at);
   at.take_contacts_before();
   at.find_islands();
   if (group.impacts.resolve(at)) {

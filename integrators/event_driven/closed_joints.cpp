@@ -35,7 +35,8 @@ double size_of(const SmoothMotion& motion, Index component, const State& state) 
   double size = 0.0;
   layout.bodies().for_range(assembly.components()[component].bodies, [&](Index, const BodySlot& slot) {
     for (Index i = 0; i < places; ++i) size = std::max(size, std::abs(state.q[slot.q + i]));
-    for (Index i = places; i < slot.v_size; ++i) size = std::max(size, motion.memory().lengths[slot.v + i]);
+    for (Index i = places; i < slot.v_size; ++i)
+      size = std::max(size, motion.memory().closure.lengths[slot.v + i]);
   });
   return size;
 }

@@ -102,7 +102,7 @@ public:
         candidates_(candidates),
         at_(at),
         model_(at.motion.model()),
-        lengths_(at.motion.memory().lengths),
+        lengths_(at.motion.memory().closure.lengths),
         acceleration_(acceleration, acceleration + lengths_.size()),
         velocity_(at.now.state.v),
         change_(lengths_.size(), 0.0),

@@ -138,7 +138,7 @@ StoredEnergies EventDriver::account(double from, double target) {
   trial_.time = target;
   const StoredEnergies stored = stored_energies(*assembly_, trial_.view(), memory_.instant.now.evaluation);
   if (!std::isfinite(stored.total())) fail_energy(from, target);
-  overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, memory_.motion.lengths, from);
+  overlaps_.demand_apart(trial_, memory_.instant.now.evaluation, memory_.motion.closure.lengths, from);
   balance_.finish();
   return stored;
 }

@@ -29,7 +29,7 @@ double speed_noise_of(double velocity, double absolute_tolerance) {
 
 double EventScales::noise_of(const SmoothMotion& motion, const Constraint& contact) const {
   if (contact.type != ConstraintType::rolling) return speed_noise;
-  const std::vector<double>& lengths = motion.memory().lengths;
+  const std::vector<double>& lengths = motion.memory().closure.lengths;
   double length = std::numeric_limits<double>::infinity();
   for (int b = 0; b < contact.bodies; ++b) {
     const Constraint::Block& block = contact.blocks[static_cast<std::size_t>(b)];
@@ -65,7 +65,7 @@ void add_sizes(const Component& component, const SmoothMotion& motion, const Sta
     const Index places = slot.rotation == none ? slot.v_size : 2;
     for (Index k = 0; k < places; ++k) sizes.place = std::max(sizes.place, std::abs(state.q[slot.q + k]));
     if (slot.rotation == none) continue;
-    const double angle = std::abs(state.q[slot.q + 2]), length = motion.memory().lengths[slot.v + 2];
+    const double angle = std::abs(state.q[slot.q + 2]), length = motion.memory().closure.lengths[slot.v + 2];
     const double turned =
         std::min(angle, turn) * std::max(unit, length) + std::max(angle - turn, 0.0) * length;
     sizes.gap = std::max({sizes.gap, turned, size_of_body(length)});
@@ -77,7 +77,7 @@ void add_sizes(const Component& component, const SmoothMotion& motion, const Sta
 
 EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
                          std::span<const Constraint> contacts) {
-  const std::vector<double>& lengths = motion.memory().lengths;
+  const std::vector<double>& lengths = motion.memory().closure.lengths;
   const EventDriven& options = *motion.model().options;
   EventScales scales;
   BodySizes sizes;

@@ -33,6 +33,8 @@ public:
   [[nodiscard]] bool empty() const { return parts_.empty(); }           ///< true if there are no joints
   [[nodiscard]] std::size_t size() const { return rows_; }              ///< number of rows
   [[nodiscard]] std::span<const Part> parts() const { return parts_; }  ///< components with joints, ascending
+  /// The constraints of each of these.
+  [[nodiscard]] std::span<JointConstraints* const> list() const { return list_; }
   /// True if a row depends on time.
   [[nodiscard]] bool depends_on_time() const;
   /// Brings the rows to a configuration and factorises.

@@ -11,7 +11,7 @@ GroupParts::GroupParts(const Assembly& assembly, const Detector& contacts, const
       detector(motion, failure, unbounded, shared.detection),
       impacts(failure, shared.impacts),
       modes(failure, impacts, unbounded, shared.modes, shared.chain),
-      projection(motion, failure),
+      closure(motion, failure),
       limits(motion, failure, shared.work),
       flow(shared.flows, motion),
       output(motion.model().unknowns),

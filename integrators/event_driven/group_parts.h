@@ -8,6 +8,7 @@
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event.h>
 #include <carom/integrators/event_driven/event_detector.h>
+#include <carom/integrators/event_driven/group_closure.h>
 #include <carom/integrators/event_driven/group_failure.h>
 #include <carom/integrators/event_driven/group_flow.h>
 #include <carom/integrators/event_driven/group_limits.h>
@@ -15,7 +16,6 @@
 #include <carom/integrators/event_driven/group_output.h>
 #include <carom/integrators/event_driven/impact_stage.h>
 #include <carom/integrators/event_driven/mode_selection.h>
-#include <carom/integrators/event_driven/projection_stage.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 #include <carom/integrators/event_driven/unbounded_forces.h>
 #include <carom/integrators/run/event_driven.h>
@@ -32,20 +32,20 @@ struct CAROM_API GroupParts {
   GroupParts(const GroupParts&) = delete;
   GroupParts& operator=(const GroupParts&) = delete;
 
-  GroupMemory* memory;         ///< shared with other groups
-  SmoothMotion motion;         ///< unknowns, loads, closed contacts
-  GroupClock clock;            ///< times
-  GroupFailure failure;        ///< errors that name the parts of the group
-  UnboundedForces unbounded;   ///< contacts whose forces grow without bound
-  EventDetector detector;      ///< what ends a smooth phase
-  ImpactStage impacts;         ///< impacts of an event
-  ModeSelection modes;         ///< modes after an event
-  ProjectionStage projection;  ///< onto joints and closed contacts
-  GroupLimits limits;          ///< bounds on work
-  GroupFlow flow;              ///< integrator of the smooth phases
-  GroupOutput output;          ///< output state, and works booked
-  std::vector<double> y;       ///< unknowns at clock.now
-  Phase phase;                 ///< what it is in between
+  GroupMemory* memory;        ///< shared with other groups
+  SmoothMotion motion;        ///< unknowns, loads, closed contacts
+  GroupClock clock;           ///< times
+  GroupFailure failure;       ///< errors that name the parts of the group
+  UnboundedForces unbounded;  ///< contacts whose forces grow without bound
+  EventDetector detector;     ///< what ends a smooth phase
+  ImpactStage impacts;        ///< impacts of an event
+  ModeSelection modes;        ///< modes after an event
+  GroupClosure closure;       ///< of joints and closed contacts
+  GroupLimits limits;         ///< bounds on work
+  GroupFlow flow;             ///< integrator of the smooth phases
+  GroupOutput output;         ///< output state, and works booked
+  std::vector<double> y;      ///< unknowns at clock.now
+  Phase phase;                ///< what it is in between
 };
 
 }  // namespace carom

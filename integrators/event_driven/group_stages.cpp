@@ -43,7 +43,7 @@ bool is_at_rest(GroupParts& group, MotionSample& now) {
     double size = 0.0;
     model.unknowns.for_velocities([&](Range v, std::size_t) {
       for (Index i = v.begin; i < v.end; ++i) {
-        size = std::max(size, std::abs(numbers[i]) * group.memory->motion.lengths[i]);
+        size = std::max(size, std::abs(numbers[i]) * group.memory->motion.closure.lengths[i]);
       }
     });
     return size;
@@ -82,7 +82,7 @@ void accept_step(GroupParts& group, EventBalance& balance) {
   MotionSample& now = group.memory->instant.now;
   group.motion.sample(group.clock.now, group.y.data(), Forces::all, now);
   demand_closed(group.motion, now, group.failure);
-  if (group.projection.apply(now, group.y, balance)) flow.correct(group.y);
+  if (group.closure.apply(now, group.y, balance)) flow.correct(group.y);
 }
 
 namespace {
@@ -133,9 +133,9 @@ void arrive_at(const Event& event, GroupParts& group, EventInstant& at) {
   }
   if (at.rate_jumps) return;
   if (event.guard == Guard::slip) {
-    group.projection.apply_with_contact_stuck(event.which, at.now, at.y, at.balance);
+    group.closure.apply_with_contact_stuck(event.which, at.now, at.y, at.balance);
   } else {
-    group.projection.apply(at.now, at.y, at.balance);
+    group.closure.apply(at.now, at.y, at.balance);
   }
 }
 
@@ -146,7 +146,7 @@ Phase::Kind start_flow(GroupParts& group, EventInstant& at) {
     group.failure.demand_finite_loads(now);
     group.failure.fail("the forces of closed contacts contradict each other", {});
   }
-  if (group.projection.apply(now, group.y, at.balance))
+  if (group.closure.apply(now, group.y, at.balance))
     group.motion.sample(at.time, group.y.data(), Forces::all, now);
   const GroupModel& model = group.motion.model();
   const ElementId lost = model.find_without_direction(now, at.scales.speed_noise);
@@ -174,7 +174,7 @@ void write_output(double target, GroupParts& group, EventBalance& balance) {
       MotionSample& then = group.memory->instant.now;
       group.motion.sample(target, group.output.y().data(), Forces::all, then);
       demand_closed(group.motion, then, group.failure);
-      projected = group.projection.apply_to_output(then, group.output.y(), balance);
+      projected = group.closure.apply_to_output(then, group.output.y(), balance);
     }
   }
   group.output.book(projected, balance);

@@ -44,7 +44,7 @@ void JointReactions::react(MotionSample& at) {
 std::span<const double> JointReactions::multipliers(const MotionSample& at,
                                                     std::span<const ActiveContact> contacts) {
   assert(is_at(at));
-  std::vector<double>& answer = memory_->of_velocity;
+  std::vector<double>& answer = memory_->closure.of_velocity;
   copy(velocities_, at.loads(), answer);
   for (const ActiveContact& contact : contacts) {
     contact.at.add_force(contact.normal, contact.tangential, answer.data());
@@ -61,7 +61,7 @@ std::span<const double> JointReactions::multipliers(const MotionSample& at,
 
 bool JointReactions::add_contact_forces(ActiveSet& active, MotionSample& at) {
   if (joints_->bounds.empty()) return active.add_reactions(*assembly_, at.acceleration.data());
-  std::vector<double>& free = memory_->held;
+  std::vector<double>& free = memory_->closure.momentum;
   copy(velocities_, at.acceleration, free);
   BoundIteration iteration;
   for (int i = 0; i < BoundIteration::most_repetitions; ++i) {
@@ -100,7 +100,7 @@ bool JointReactions::update_friction_bounds(ActiveSet& active, MotionSample& at,
                                             std::vector<ForceMargin>& margins, BoundIteration& iteration,
                                             double& change) {
   assert(is_at(at));
-  std::vector<double>& free = memory_->held;
+  std::vector<double>& free = memory_->closure.momentum;
   copy(velocities_, at.acceleration, free);
   active.list().swap(contacts);
   const bool found = update_bounds_once(active, at, iteration, change);
@@ -140,7 +140,7 @@ bool JointReactions::solve(IslandProblem& problem, std::span<Constraint> contact
 }
 
 std::span<const double> JointReactions::impulses(const IslandProblem& problem) {
-  std::vector<double>& change = memory_->of_velocity;
+  std::vector<double>& change = memory_->closure.of_velocity;
   for (const Range v : velocities_) std::fill(change.begin() + v.begin, change.begin() + v.end, 0.0);
   problem.map().add_loads(1.0, change.data());
   joints_->rows.apply_inverse_mass(change.data());
@@ -153,7 +153,7 @@ std::span<const double> JointReactions::follow_jump(const MotionSample& at, std:
                                                     double noise, double& work) {
   assert(is_at(at));
   if (!joints_->rows.depends_on_time()) return {};
-  std::vector<double>&change = memory_->of_velocity, &impulse = memory_->held;
+  std::vector<double>&change = memory_->closure.of_velocity, &impulse = memory_->closure.momentum;
   copy(velocities_, at.state.v, change);
   memory_->multipliers.resize(joints_->rows.size());
   joints_->rows.project(JointLevel::velocity, change.data(), memory_->multipliers.data());
@@ -161,7 +161,7 @@ std::span<const double> JointReactions::follow_jump(const MotionSample& at, std:
   for (const Range v : velocities_) {
     for (Index i = v.begin; i < v.end; ++i) {
       change[i] -= at.state.v[i];
-      largest = std::max(largest, std::abs(change[i]) * memory_->lengths[i]);
+      largest = std::max(largest, std::abs(change[i]) * memory_->closure.lengths[i]);
     }
   }
   if (!(largest > noise)) return {};

@@ -145,7 +145,7 @@ void MeetingSearch::find(ClockGroup& group, double time, MeetingQueue& queue) {
 
 /// Rounding of gaps, not above that of the group of both.
 double MeetingSearch::noise(const Bodies& bodies, const BodyPairBound& bound) const {
-  const std::vector<double>& lengths = bodies.of_a.motion().memory().lengths;
+  const std::vector<double>& lengths = bodies.of_a.motion().memory().closure.lengths;
   double size = 0.0;
   for (const BodyFlight* flight : {&bodies.a, &bodies.b}) {
     size = std::max(size, flight->place.cwiseAbs().maxCoeff());

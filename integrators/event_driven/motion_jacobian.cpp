@@ -66,7 +66,7 @@ MotionJacobian::MotionJacobian(const GroupModel& model, JointReactions& reaction
 void MotionJacobian::append(MotionSample& sample, std::vector<RateDerivative>& out) {
   const Assembly& assembly = *model_->assembly;
   // Masses are diagonal in the velocities (JointConstraints).
-  std::vector<double>&ones = memory_->of_position, &masses = memory_->of_velocity;
+  std::vector<double>&ones = memory_->closure.of_position, &masses = memory_->closure.of_velocity;
   derivatives_.clear();
   for (const auto& part : model_->parts()) {
     const Range v = part.ranges.v;

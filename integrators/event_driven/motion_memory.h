@@ -5,6 +5,7 @@
 /// function says so.
 
 #include <carom/contact/active_set.h>
+#include <carom/contact/closure.h>
 #include <carom/contact/friction_bound_solver.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -20,20 +21,14 @@ namespace carom {
 /// Arrays over the whole model, of which a motion uses the component's part.
 struct CAROM_API MotionMemory {
   explicit MotionMemory(const Assembly& assembly)
-      : no_joints(assembly, {}),
-        flow(assembly),
-        lengths(assembly.length_scales()),
-        z_rates(flow.state.z.size()),
-        of_position(flow.state.v.size()),
-        of_velocity(flow.state.v.size()),
-        held(flow.state.v.size()) {}
+      : no_joints(assembly, {}), flow(assembly), z_rates(flow.state.z.size()), closure(assembly) {}
 
-  BoundComponents no_joints;                     ///< of groups without joints; never changes
-  MotionSample flow;                             ///< where a flow asks for rates last
-  std::vector<double> lengths;                   ///< Assembly::length_scales()
-  std::vector<double> z_rates;                   ///< rates of internal variables
-  std::vector<double> of_position, of_velocity;  ///< changes of coordinates, velocities or accelerations
-  std::vector<double> held;  ///< impulse of a change of velocities, or accelerations without contacts
+  BoundComponents no_joints;    ///< of groups without joints; never changes
+  MotionSample flow;            ///< where a flow asks for rates last
+  std::vector<double> z_rates;  ///< rates of internal variables
+  /// Joints and closed contacts, closed; its arrays are scratch for all else, but for the lengths.
+  ClosureMemory closure;
+  std::vector<Index> components;  ///< of the group at hand
   /// GroupModel::tolerances of the group that was made last.
   std::shared_ptr<const std::vector<double>> tolerances;
   std::vector<double> multipliers;     ///< of joints

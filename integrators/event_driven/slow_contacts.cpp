@@ -1,6 +1,6 @@
 // Problem: end what is too slow to be followed.
 
-#include <carom/integrators/event_driven/constraint_projection.h>
+#include <carom/integrators/event_driven/group_closure.h>
 #include <carom/integrators/event_driven/slow_contacts.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ double ContactClosing::speed_to_stop(const ActiveContact& contact, const EventIn
 
 /// Largest change of a velocity since the state before, of spins times the radius of gyration [m/s].
 double ContactClosing::largest_change(const EventInstant& at) const {
-  const std::vector<double>& lengths = at.motion.memory().lengths;
+  const std::vector<double>& lengths = at.motion.memory().closure.lengths;
   double largest = 0.0;
   for (const auto& part : at.motion.model().parts()) {
     for (Index i = part.ranges.v.begin; i < part.ranges.v.end; ++i) {
@@ -89,17 +89,17 @@ bool ContactClosing::project(std::vector<ActiveContact>& contacts, std::span<con
   const double fastest = most_of_speed * std::max(stopped, at.motion.model().options->capture_speed);
   for (int i = 0; i < most_projections;) {
     active.swap(contacts);
-    const ConstraintProjection projection = project_onto_constraints(at.motion, at.now, at.y);
+    const Closure closure = carom::close(at.motion, at.now, at.y);
     active.swap(contacts);
-    lost += projection.lost;
-    shift += projection.shift;
+    lost += closure.lost;
+    shift += closure.shift;
     if (shift > longest) return false;
-    if (projection.changed) at.update();
+    if (closure.changed) at.update();
     if (largest_change(at) > fastest) return false;
     for (ActiveContact& contact : contacts) contact.at = at.contacts[contact.place];
     if (add_approaching(contacts, others, at)) {
       i = 0;
-    } else if (!projection.changed || std::all_of(contacts.begin(), contacts.end(), is_closed)) {
+    } else if (!closure.changed || std::all_of(contacts.begin(), contacts.end(), is_closed)) {
       at.balance.flows[EnergyFlow::accumulation] += lost;
       at.balance.shift = std::max(at.balance.shift, shift);
       return true;

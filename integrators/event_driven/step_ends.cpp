@@ -1,8 +1,8 @@
 // Problem: read off a state all that may end a smooth phase, with its rounding.
 
 #include <carom/integrators/event_driven/body_gaps.h>
-#include <carom/integrators/event_driven/constraint_projection.h>
 #include <carom/integrators/event_driven/detection_memory.h>
+#include <carom/integrators/event_driven/group_closure.h>
 #include <carom/integrators/event_driven/step_ends.h>
 
 #include <algorithm>
@@ -52,13 +52,13 @@ void find_drifts(SmoothMotion& motion, std::span<const char> is_active, const Mo
     if (is_active[i] != 0 || !(out.gaps[i].value < 0.0)) continue;
     const Index bound = model.bound_of(i);
     if (bound != none && !out.body_gaps[bound].known) continue;
-    if (!known && !find_corrections(motion, at)) return;
+    if (!known && !find_closure(motion, at)) return;
     known = true;
     motion.contact(i, at, contact);
-    const double rate = out.gaps[i].first + contact.times(0, motion.memory().of_velocity.data());
+    const double rate = out.gaps[i].first + contact.times(0, motion.memory().closure.of_velocity.data());
     if (rate < -speed_noise_of(contact.speed(0, at.state.v.data()), model.options->absolute_tolerance))
       continue;
-    const double raised = contact.times(0, motion.memory().of_position.data());
+    const double raised = contact.times(0, motion.memory().closure.of_position.data());
     out.gaps[i].drift = std::clamp(raised, 0.0, model.options->gap_tolerance);
   }
 }
