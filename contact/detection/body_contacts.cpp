@@ -1,6 +1,7 @@
 // Problem: which bodies touch each other, where, and by which law.
 
 #include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/contacts_of_two.h>
 #include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/touching_kinds.h>
@@ -207,27 +208,21 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
   std::array<GapPoint, 2> found;
   const int count = find_gaps(of_a, of_b, margin, found);
   if (count == 0) return;
-  BodyTouch first{i, j, found[0], 0.0};
-  std::optional<GapPoint> second;
-  bool is_alone = count < 2;
-  if (of_a.radius + of_b.radius == 0.0 && is_near_corner(first.gap, lengths_.corner)) {
-    const CornerMeeting meeting = meeting_near(first, query, memory);
-    if (!leave_hidden_side(first.gap, meeting)) return;
-    is_alone = is_alone || first.gap.normal != found[0].normal;  // the other one is of the hidden side
-    second = second_contact(first.gap, meeting);
-  }
-  first.of_corners = second.has_value();
-  const bool is_first = add_if_any(first), is_second = second && add_if_any({i, j, *second, 0.0, true});
-  // Where one of two corners that meet touches, so does the other one.
-  if (second && is_first != is_second && std::abs(first.gap.gap - second->gap) <= lengths_.corner)
-    memory.touching.push_back({i, j, is_first ? *second : first.gap, 0.0, true});
-  // One of the same name as the second is of the same corner.
-  if (is_alone || (second && key_of(a, b, *second) == key_of(a, b, found[1]))) return;
-  const BodyTouch far{i, j, found[1], 0.0};
-  if (!add_if_any(far) || !second || !is_near_corner(far.gap, lengths_.corner)) return;
-  const CornerMeeting meeting = meeting_near(far, query, memory);
-  if (meeting.a.hidden != HiddenSide::neither || meeting.b.hidden != HiddenSide::neither) return;
-  if (const auto other = along_other_face(far.gap, meeting)) add_if_any({i, j, *other, 0.0});
+  const auto corners_near = [&](const GapPoint& gap) -> std::optional<CornerMeeting> {
+    if (of_a.radius + of_b.radius > 0.0 || !is_near_corner(gap, lengths_.corner)) return {};
+    return meeting_near({i, j, gap}, query, memory);
+  };
+  const auto have_one_name = [&](const GapPoint& one, const GapPoint& other) {
+    return key_of(a, b, one) == key_of(a, b, other);
+  };
+  const auto add_one = [&](const GapPoint& gap, bool of_corners, TwoOutlines::Adds adds) {
+    const BodyTouch touch{i, j, gap, 0.0, of_corners};
+    if (adds == TwoOutlines::Adds::if_it_touches) return add_if_any(touch);
+    memory.touching.push_back(touch);
+    return true;
+  };
+  list_contacts({found.data(), static_cast<std::size_t>(count)},
+                {corners_near, have_one_name, add_one, lengths_.corner});
 }
 
 /// Adds a contact of the step before that is a little open, where turning explains that.

@@ -1,5 +1,6 @@
 // Problem: which of many pieces of the ground a body touches, where, and by which law.
 
+#include <carom/contact/detection/contacts_of_two.h>
 #include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/feature_margin.h>
 #include <carom/contact/detection/gap_convex.h>
@@ -145,23 +146,17 @@ void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Co
   std::array<GapPoint, 2> found;
   const int count = pieces_.find(piece, search.placed, search.margin, found);
   if (count == 0) return;
-  std::optional<GapPoint> second;
-  bool is_alone = count < 2;
-  if (const auto meeting = meeting_near(search, on_ground, found[0])) {
-    const Vec<2> normal = found[0].normal;
-    if (!leave_hidden_side(found[0], *meeting)) return;
-    is_alone = is_alone || found[0].normal != normal;  // the other one is of the hidden side
-    second = second_contact(found[0], *meeting);
-  }
-  const double most = search.query.margin, any = std::numeric_limits<double>::infinity();
-  const bool is_first = add(search, on_ground, found[0], most, second.has_value(), out),
-             is_second = second && add(search, on_ground, *second, most, true, out);
-  // Where one of two corners that meet touches, so does the other one.
-  if (second && is_first != is_second && std::abs(found[0].gap - second->gap) <= pieces_.lengths().corner)
-    add(search, on_ground, is_first ? *second : found[0], any, true, out);
-  // One of the same name as the second is of the same corner.
-  if (!is_alone && !(second && key_of(a, b, *second) == key_of(a, b, found[1])))
-    add(search, on_ground, found[1], most, false, out);
+  const auto corners_near = [&](const GapPoint& gap) { return meeting_near(search, on_ground, gap); };
+  const auto have_one_name = [&](const GapPoint& one, const GapPoint& other) {
+    return key_of(a, b, one) == key_of(a, b, other);
+  };
+  const auto add_one = [&](const GapPoint& gap, bool of_corners, TwoOutlines::Adds adds) {
+    const bool anyway = adds == TwoOutlines::Adds::anyway;
+    const double most = anyway ? std::numeric_limits<double>::infinity() : search.query.margin;
+    return add(search, on_ground, gap, most, of_corners, out);
+  };
+  list_contacts({found.data(), static_cast<std::size_t>(count)},
+                {corners_near, have_one_name, add_one, pieces_.lengths().corner});
 }
 
 /// The corners nearest to where a sharp outline of a body touches one of the ground; nothing where no two are
