@@ -266,48 +266,18 @@ void BodyContacts::fill(const ConstraintKey& key, const BodyOutline& a, const Bo
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
 }
 
-void BodyContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                           Constraint& out) const {
-  const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)],
-                    &b = outlines_.list()[pair.outline];
-  // In the frame of the second body its vertices are at hand as described.
-  const OutlinePair at = outline_pair(pair, state, evaluation);
-  const Vec<2> vertex = at.vertex_at_outline();
-  const ConvexOutline point{{&vertex, 1}, a.radius};
-  std::array<GapPoint, 2> found;
-  static_cast<void>(find_gaps(point, at.outline, any_gap, found));
-  GapPoint gap = found[0];
-  const bool is_near = gap.gap <= lengths_.corner_follows();
-  if (at.is_sharp() && (is_near || FeatureRegions::is_flat(at.outline))) {
-    const FeatureRegions regions(at);
-    gap = regions.gap(point, regions.nearest());
-  }
-  const FeatureKey vertex_key = a.vertex(pair.feature - a.vertices.begin);
-  gap.feature_a = pair.feature - a.vertices.begin;
-  gap = in_space(at.outline_frame, gap);
-  out = {};  // it may have held a contact of other bodies
-  if (b.key < a.key) {
-    fill({b.surface(), vertex_key}, b, a, gap.swapped(), state, out);
-  } else {
-    fill({vertex_key, b.surface()}, a, b, gap, state, out);
-  }
-}
-
-void BodyContacts::follow(const ContactPair& pair, Index feature, const StateView& state,
-                          const Evaluation& evaluation, Constraint& contact) const {
+PairSides BodyContacts::sides(const ContactPair& pair, const StateView& state,
+                              const Evaluation& evaluation) const {
   const BodySlots& bodies = assembly_->layout()->bodies();
   const BodyOutline &a = outlines_.list()[outlines_.outline_of(pair.feature)],
                     &b = outlines_.list()[pair.outline];
-  const OutlinePair at = outline_pair(pair, state, evaluation);
-  const Vec<2> vertex = at.vertex_at_outline();
-  const GapPoint gap = in_space(at.outline_frame, FeatureRegions(at).gap({{&vertex, 1}, a.radius}, feature));
-  const PairSide side_a = PairSide::of_body(bodies[a.body], a.body, a.radius, state);
-  const PairSide side_b = PairSide::of_body(bodies[b.body], b.body, b.radius, state);
-  if (contact.body() == a.body) {
-    fill_pair_rows(side_a, side_b, gap, contact);
-  } else {
-    fill_pair_rows(side_b, side_a, gap.swapped(), contact);
-  }
+  return {.at = outline_pair(pair, state, evaluation),
+          .of_vertex = PairSide::of_body(bodies[a.body], a.body, a.radius, state),
+          .of_outline = PairSide::of_body(bodies[b.body], b.body, b.radius, state),
+          .vertex = a.vertex(pair.feature - a.vertices.begin),
+          .surface = b.surface(),
+          .law = law(a, b),
+          .vertex_is_first = !(b.key < a.key)};
 }
 
 }  // namespace carom

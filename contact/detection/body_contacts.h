@@ -16,6 +16,7 @@
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_filter.h>
 #include <carom/contact/detection/pair_rows.h>
+#include <carom/contact/detection/pair_sides.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
@@ -96,15 +97,9 @@ public:
   [[nodiscard]] const Surface& law(const ContactPair& pair) const {
     return *law(outlines_.list()[outlines_.outline_of(pair.feature)], outlines_.list()[pair.outline]);
   }
-  /// Writes the contact of such a pair, whatever its gap.
-  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-               Constraint& out) const;
-
-  /// Brings rows, gap and drift of the contact of such a pair to a state as long as its vertex stays with one
-  /// feature of the outline (ConvexOutline), whichever is the nearest: a smooth function of the motion, also
-  /// a little beyond the border where another feature takes over. Key and law stay.
-  void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
-              Constraint& contact) const;
+  /// Both sides of such a pair.
+  [[nodiscard]] PairSides sides(const ContactPair& pair, const StateView& state,
+                                const Evaluation& evaluation) const;
   /// The vertex and the outline of such a pair.
   [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
                                          const Evaluation& evaluation) const;

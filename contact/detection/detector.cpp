@@ -107,9 +107,14 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
     return;
   }
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
-  if (pair.other != none) return bodies_.contact(pair, state, evaluation, out);
-  if (pair.is_of_pieces()) return pieces_.contact(pair, state, evaluation, places, out);
+  if (pair.has_outline()) return write_contact(sides(pair, state, evaluation, places), state, out);
   ground_.contact(pair, state, evaluation, ground_.shapes().motion(pair.ground_shape, places), out);
+}
+
+PairSides Detector::sides(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                          const GroundPlaces& places) const {
+  if (!pair.is_of_pieces()) return bodies_.sides(pair, state, evaluation);
+  return pieces_.sides(pair, state, evaluation, places);
 }
 
 std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }
@@ -121,8 +126,7 @@ std::optional<ContactPair> pair_of(const Detector& detector, const ConstraintKey
 
 void follow(const Detector& detector, const ContactPair& pair, Index feature, const StateView& state,
             const Evaluation& evaluation, const GroundPlaces& places, Constraint& contact) {
-  if (!pair.is_of_pieces()) return detector.bodies().follow(pair, feature, state, evaluation, contact);
-  detector.pieces().follow(pair, feature, state, evaluation, places, contact);
+  follow(detector.sides(pair, state, evaluation, places), feature, contact);
 }
 
 OutlinePair outline_pair(const Detector& detector, const ContactPair& pair, const StateView& state,

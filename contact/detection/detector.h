@@ -99,6 +99,10 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundPlaces& places, Constraint& out) const;
 
+  /// Both sides of a pair that has an outline (ContactPair::has_outline()).
+  [[nodiscard]] PairSides sides(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                                const GroundPlaces& places) const;
+
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
     return ground_.law_facts().static_friction || bodies_.law_facts().static_friction ||

@@ -317,25 +317,12 @@ FaceChain GroundPieces::chain(Index outline) const {
   return {view(outline), corners.subspan(first, n), of.is_closed, depths.subspan(first, n), lengths_};
 }
 
-GapPoint GroundPieces::tracked(Index outline, const ConvexOutline& a, Index feature_a,
-                               Index feature_b) const {
-  const GroundOutline& of = outlines_[outline];
-  if (of.is_hollow()) return gap_inside_circle(a, feature_a, vertices_[of.vertices.begin], of.radius);
-  return tracked_gap(a, feature_a, view(outline), feature_b);
-}
-
-void GroundPieces::fill_rows(Index outline, const PairSide& body, const GapPoint& at,
-                             const GroundMotion* motion, const GroundAtEnd& end, Constraint& out) const {
+PairSide GroundPieces::side(Index outline, const GroundMotion* motion) const {
   const GroundOutline& of = outlines_[outline];
   const double radius = of.is_hollow() ? -of.radius : of.radius;
-  const PairSide ground =
-      motion == nullptr ? PairSide::at_rest(radius) : PairSide::of_motion(*motion, radius);
-  fill_pair_rows(body, ground, at, out);
-  if (motion != nullptr && end.motion != nullptr) {
-    add_motion_after(body, ground, at, *motion, *end.motion, end.step, out);
-  }
-  out.surface_velocity[1] += of.surface_speed;
-  out.surface_velocity_after[1] += of.surface_speed;
+  PairSide ground = motion == nullptr ? PairSide::at_rest(radius) : PairSide::of_motion(*motion, radius);
+  ground.surface_speed = of.surface_speed;
+  return ground;
 }
 
 }  // namespace carom

@@ -86,17 +86,11 @@ public:
   [[nodiscard]] FaceChain chain(Index outline) const;
   /// The part of an outline around a vertex, which is the first of its vertices.
   [[nodiscard]] std::span<const Vec<2>> around(Index vertex) const { return around_[vertex]; }
-  /// The gap of given features, as tracked_gap() (gap_convex.h).
-  [[nodiscard]] GapPoint tracked(Index outline, const ConvexOutline& a, Index feature_a,
-                                 Index feature_b) const;
   /// True of a point at a height over a feature of a chain which is behind it and does not touch it: deeper
   /// than its face is touched, or out of the ground on another side (is_out_elsewhere()).
   [[nodiscard]] bool is_out_behind(Index outline, Index feature, double height, const Vec<2>& point) const;
-  /// Writes the rows of a contact with an outline, as fill_pair_rows(), the velocity of a conveyor's surface
-  /// with them. \param at where the shape is now \param motion of its shape, null at rest \param end likewise
-  /// at the end of the step
-  void fill_rows(Index outline, const PairSide& body, const GapPoint& at, const GroundMotion* motion,
-                 const GroundAtEnd& end, Constraint& out) const;
+  /// An outline as a side of a contact. \param motion of its shape, null at rest
+  [[nodiscard]] PairSide side(Index outline, const GroundMotion* motion) const;
 
 private:
   struct Piece {

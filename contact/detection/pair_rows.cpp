@@ -117,7 +117,7 @@ void fill_pair_rows(const PairSide& a, const PairSide& b, const GapPoint& at, Co
   const Vec<2> t = Space<2>::tangent_frame(n)[0], point = meeting_point(at);
   const Vec<2> velocity_b = b.velocity_at(point), relative = a.velocity_at(point) - velocity_b;
   if (b.columns == 0) {
-    out.surface_velocity = {n.dot(velocity_b), t.dot(velocity_b), 0.0};
+    out.surface_velocity = {n.dot(velocity_b), t.dot(velocity_b) + b.surface_speed, 0.0};
     out.surface_velocity_after = out.surface_velocity;
   }
 
@@ -147,7 +147,8 @@ void add_motion_after(const PairSide& a, const PairSide& b, const GapPoint& at, 
   // the sliding then. That an edge of the body turns is left to the body, as over ground at rest.
   double along = 0.0;
   if (at.kind != GapKind::edge_of_a) along = t.dot(a.velocity_at(at.point_a + a.radius * at.normal) - ground);
-  out.surface_velocity_after = {at.normal.dot(end) + step * motion.turning * along, t.dot(end), 0.0};
+  out.surface_velocity_after = {at.normal.dot(end) + step * motion.turning * along,
+                                t.dot(end) + b.surface_speed, 0.0};
 }
 
 }  // namespace carom

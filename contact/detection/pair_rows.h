@@ -35,7 +35,8 @@ struct CAROM_API PairSide : RowSide {
   Vec<2> velocity = Vec<2>::Zero();      ///< of that [m/s]
   double spin = 0.0;                     ///< [rad/s]
   Vec<2> acceleration = Vec<2>::Zero();  ///< as prescribed, of a shape on ground; else zero [m/s^2]
-  double angular_acceleration = 0.0;     ///< likewise [rad/s^2]
+  double angular_acceleration = 0.0;     ///< as prescribed, of a shape on ground; else zero [rad/s^2]
+  double surface_speed = 0.0;            ///< of a conveyor, along the tangent [m/s]
 
   /// A body. \param place in the order of assembly \param radius of its outline
   [[nodiscard]] static PairSide of_body(const BodySlot& slot, Index place, double radius,

@@ -217,38 +217,12 @@ void PieceContacts::fill(const ConstraintKey& key, const BodyOutline& a, Index o
   out.key = key;
   out.law = laws_[a.material * shapes_.size() + pieces_.outlines()[on_ground].shape];
   out.friction = out.law.friction;
-  pieces_.fill_rows(on_ground, PairSide::of_body(body, a.body, a.radius, state), gap, motion, end, out);
+  const PairSide side = PairSide::of_body(body, a.body, a.radius, state),
+                 ground = pieces_.side(on_ground, motion);
+  fill_pair_rows(side, ground, gap, out);
+  if (motion != nullptr && end.motion != nullptr)
+    add_motion_after(side, ground, gap, *motion, *end.motion, end.step, out);
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
-}
-
-/// The gap of a pair at one feature of its outline, or at the nearest one (`none`); a of it is the body.
-GapPoint PieceContacts::gap_of(const ContactPair& pair, const OutlinePair& at, Index feature) const {
-  const Vec<2> vertex = at.vertex_at_outline();
-  const ConvexOutline point{{&vertex, 1}, at.around.radius};
-  if (pair.ground_outline != none) {
-    const Index on_ground = pair.ground_outline;
-    GapPoint gap;
-    if (pieces_.outlines()[on_ground].is_hollow()) {
-      gap = pieces_.tracked(on_ground, point, 0, 0);
-    } else {
-      const bool any = feature == none;
-      const FeatureRegions regions(at);
-      if (any) feature = regions.nearest();
-      gap = regions.gap(point, feature);
-      const double height = gap.gap + at.around.radius;
-      if (any && at.chain && pieces_.is_out_behind(on_ground, feature, height, vertex)) {
-        gap.gap = -height - at.around.radius;  // it is on the other side
-        gap.normal = -gap.normal;
-      }
-    }
-    gap.feature_a = pair.feature - outlines_.list()[outlines_.outline_of(pair.feature)].vertices.begin;
-    return in_space(at.outline_frame, gap);
-  }
-  const FeatureRegions regions(at);
-  GapPoint gap = regions.gap(point, feature == none ? regions.nearest() : feature);
-  gap.feature_a =
-      pair.ground_vertex - pieces_.outlines()[pieces_.outline_of(pair.ground_vertex)].vertices.begin;
-  return in_space(at.outline_frame, gap).swapped();
 }
 
 std::optional<ContactPair> PieceContacts::pair_of(const ConstraintKey& key) const {
@@ -279,25 +253,27 @@ const Surface& PieceContacts::law(const ContactPair& pair) const {
   return laws_[sides_of(pair).body.material * shapes_.size() + pair.ground_shape];
 }
 
-void PieceContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                            const GroundPlaces& places, Constraint& out) const {
+PairSides PieceContacts::sides(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                               const GroundPlaces& places) const {
   const auto [a, on_ground] = sides_of(pair);
   const GroundOutline& b = pieces_.outlines()[on_ground];
-  const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, places), none);
-  const ConstraintKey key = pair.ground_outline != none ? ConstraintKey{a.vertex(gap.feature_a), b.surface()}
-                                                        : ConstraintKey{a.surface(), b.vertex(gap.feature_b)};
-  out = {};  // it may have held a contact of another body
-  fill(key, a, on_ground, gap, state, shapes_.motion(pair.ground_shape, places), {}, out);
-}
-
-void PieceContacts::follow(const ContactPair& pair, Index feature, const StateView& state,
-                           const Evaluation& evaluation, const GroundPlaces& places,
-                           Constraint& contact) const {
-  const auto [a, on_ground] = sides_of(pair);
-  const GapPoint gap = gap_of(pair, outline_pair(pair, state, evaluation, places), feature);
-  const BodySlot& body = assembly_->layout()->bodies()[pair.body];
-  pieces_.fill_rows(on_ground, PairSide::of_body(body, pair.body, a.radius, state), gap,
-                    shapes_.motion(pair.ground_shape, places), {}, contact);
+  const BodySlot& body = assembly_->layout()->bodies()[a.body];
+  const PairSide of_body = PairSide::of_body(body, a.body, a.radius, state);
+  const PairSide of_ground = pieces_.side(on_ground, shapes_.motion(pair.ground_shape, places));
+  const bool is_of_body = pair.ground_outline != none;
+  PairSides out{.at = outline_pair(pair, state, evaluation, places),
+                .of_vertex = is_of_body ? of_body : of_ground,
+                .of_outline = is_of_body ? of_ground : of_body,
+                .vertex = is_of_body ? a.vertex(pair.feature - a.vertices.begin)
+                                     : b.vertex(pair.ground_vertex - b.vertices.begin),
+                .surface = is_of_body ? b.surface() : a.surface(),
+                .law = &law(pair),
+                .vertex_is_first = is_of_body};
+  if (is_of_body && b.is_chain()) {
+    out.pieces = &pieces_;
+    out.chain = on_ground;
+  }
+  return out;
 }
 
 }  // namespace carom

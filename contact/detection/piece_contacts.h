@@ -15,6 +15,7 @@
 #include <carom/contact/detection/ground_pieces.h>
 #include <carom/contact/detection/ground_shapes.h>
 #include <carom/contact/detection/outline_pair.h>
+#include <carom/contact/detection/pair_sides.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
@@ -53,13 +54,9 @@ public:
 
   /// Law of a pair.
   [[nodiscard]] const Surface& law(const ContactPair& pair) const;
-  /// Writes the contact of a pair, whatever its gap. \param places of all shapes
-  void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-               const GroundPlaces& places, Constraint& out) const;
-  /// Brings rows, gap and drift of the contact of a pair to a state, as long as its vertex stays with one
-  /// feature of the outline (ConvexOutline), whichever is the nearest; key and law stay.
-  void follow(const ContactPair& pair, Index feature, const StateView& state, const Evaluation& evaluation,
-              const GroundPlaces& places, Constraint& contact) const;
+  /// Both sides of a pair. \param places of all shapes
+  [[nodiscard]] PairSides sides(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                                const GroundPlaces& places) const;
   /// The vertex and the outline of a pair.
   [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
                                          const Evaluation& evaluation, const GroundPlaces& places) const;
@@ -97,7 +94,6 @@ private:
   void fill(const ConstraintKey& key, const BodyOutline& a, Index ground, const GapPoint& gap,
             const StateView& state, const GroundMotion* motion, const GroundAtEnd& end,
             Constraint& out) const;
-  [[nodiscard]] GapPoint gap_of(const ContactPair& pair, const OutlinePair& at, Index feature) const;
 
   const Assembly* assembly_;
   GroundShapes shapes_;

@@ -1,10 +1,13 @@
 // Shapes on ground that outlines touch: their pieces, where they move, and the rows of contacts with them.
 
 #include <carom/bodies/rigid_body.h>
+#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/gap_inside_circle.h>
 #include <carom/contact/detection/ground_parts.h>
 #include <carom/contact/detection/ground_pieces.h>
 #include <carom/contact/detection/half_space.h>
 #include <carom/contact/detection/outline_pair.h>
+#include <carom/contact/detection/pair_rows.h>
 #include <carom/core/system.h>
 
 #include "tests/contact/detection/convex_reference.h"
@@ -26,6 +29,14 @@ using namespace carom::planar;
 using carom_test::OwnedOutline;
 
 using Gaps = std::array<GapPoint, 2>;
+
+/// The gap of given features.
+GapPoint tracked(const GroundPieces& pieces, Index outline, const ConvexOutline& a, Index feature_a,
+                 Index feature_b) {
+  const GroundOutline& of = pieces.outlines()[outline];
+  if (of.is_hollow()) return gap_inside_circle(a, feature_a, pieces.vertices()[of.vertices.begin], of.radius);
+  return tracked_gap(a, feature_a, pieces.view(outline), feature_b);
+}
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Surface law{.friction = 0.0, .normal_restitution = 1.0};
@@ -48,7 +59,7 @@ struct Ground {
       for (int k = 0; k < count; ++k) {
         GapPoint at = found[static_cast<std::size_t>(k)];
         const GapPoint again =
-            pieces.tracked(pieces.outline(piece), local.view(), at.feature_a, at.feature_b);
+            tracked(pieces, pieces.outline(piece), local.view(), at.feature_a, at.feature_b);
         EXPECT_EQ(again.gap, at.gap);
         EXPECT_EQ(again.normal, at.normal);
         at.normal = frame.turned(at.normal);
@@ -198,7 +209,7 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
     OwnedOutline moved = local.moved(now[2], {now[0], now[1]});
     const PlaneFrame frame(ground.shapes.motion(0, ground.places));
     for (Vec<2>& vertex : moved.vertices) vertex = frame.inside(vertex);
-    GapPoint at = ground.pieces.tracked(0, moved.view(), 1, 0);
+    GapPoint at = tracked(ground.pieces, 0, moved.view(), 1, 0);
     at.normal = frame.turned(at.normal);
     at.point_a = frame.outside(at.point_a);
     at.point_b = frame.outside(at.point_b);
@@ -209,8 +220,8 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
     const auto now = q_at(t);
     const StateView state{t, now.data(), v.data(), nullptr};
     Constraint rows;
-    ground.pieces.fill_rows(0, PairSide::of_body(slot, 0, local.radius, state), at,
-                            ground.shapes.motion(0, ground.places), {}, rows);
+    fill_pair_rows(PairSide::of_body(slot, 0, local.radius, state),
+                   ground.pieces.side(0, ground.shapes.motion(0, ground.places)), at, rows);
     return rows;
   };
   const Constraint rows = rows_at(0);

@@ -1,0 +1,69 @@
+// Problem: the contact of a vertex and an outline, whosever they are.
+
+#include <carom/contact/detection/feature_margin.h>
+#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/gap_inside_circle.h>
+#include <carom/contact/detection/pair_sides.h>
+
+#include <array>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+/// The gap at the nearest feature, in the frame of the outline.
+GapPoint nearest_gap(const PairSides& sides, const ConvexOutline& point) {
+  const OutlinePair& at = sides.at;
+  if (!at.chain) {
+    std::array<GapPoint, 2> found;
+    static_cast<void>(find_gaps(point, at.outline, std::numeric_limits<double>::infinity(), found));
+    const bool is_near = found[0].gap <= at.lengths.corner_follows();
+    if (!at.is_sharp() || !(is_near || FeatureRegions::is_flat(at.outline))) return found[0];
+  }
+  const FeatureRegions regions(at);
+  const Index feature = regions.nearest();
+  GapPoint gap = regions.gap(point, feature);
+  if (sides.pieces == nullptr) return gap;
+  const double height = gap.gap + point.radius;
+  if (sides.pieces->is_out_behind(sides.chain, feature, height, point.vertices[0])) {
+    gap.gap = -height - point.radius;  // it is on the other side
+    gap.normal = -gap.normal;
+  }
+  return gap;
+}
+
+void fill(const PairSides& sides, const GapPoint& gap, Constraint& out) {
+  sides.vertex_is_first ? fill_pair_rows(sides.of_vertex, sides.of_outline, gap, out)
+                        : fill_pair_rows(sides.of_outline, sides.of_vertex, gap.swapped(), out);
+}
+
+}  // namespace
+
+GapPoint gap_of(const PairSides& sides, Index feature) {
+  const OutlinePair& at = sides.at;
+  const Vec<2> vertex = at.vertex_at_outline();
+  const ConvexOutline point{{&vertex, 1}, at.around.radius};
+  if (at.is_hollow) {
+    const double radius = -sides.of_outline.radius;
+    return in_space(at.outline_frame, gap_inside_circle(point, 0, at.outline.vertices[0], radius));
+  }
+  const GapPoint gap = feature == none ? nearest_gap(sides, point) : FeatureRegions(at).gap(point, feature);
+  return in_space(at.outline_frame, gap);
+}
+
+void write_contact(const PairSides& sides, const StateView& state, Constraint& out) {
+  out = {};  // it may have held a contact of other bodies
+  out.key = sides.vertex_is_first ? ConstraintKey{sides.vertex, sides.surface}
+                                  : ConstraintKey{sides.surface, sides.vertex};
+  out.law = *sides.law;
+  out.friction = out.law.friction;
+  fill(sides, gap_of(sides, none), out);
+  if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
+}
+
+void follow(const PairSides& sides, Index feature, Constraint& contact) {
+  fill(sides, gap_of(sides, feature), contact);
+}
+
+}  // namespace carom
