@@ -1,8 +1,8 @@
 // Problem: many pairs of bodies, few of which come near each other in a step.
 
+#include <carom/contact/detection/first_closing.h>
 #include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/body_gaps.h>
-#include <carom/integrators/event_driven/pair_closing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,14 +16,16 @@ namespace {
 class StepPath final : public PairPath {
 public:
   explicit StepPath(SearchedStep& step) : step_(&step) {}
-  [[nodiscard]] const MotionSample& sample(double time) override { return step_->sample_for_gaps(time); }
+  [[nodiscard]] PathSample sample(double time, PathLook /*how*/) override {
+    return step_->sample_for_gaps(time).on_path();
+  }
 
 private:
   SearchedStep* step_;
 };
 
 PairGap gap_of(const GroupModel& model, std::size_t place) {
-  return {*model.assembly, *model.detector, model.pairs[model.bounds[place].pair], model.bounds[place]};
+  return {*model.detector, model.pairs[model.bounds[place].pair], model.bounds[place]};
 }
 
 /// The largest speed of a gap in a step.
@@ -58,7 +60,8 @@ bool sample_body_gaps(const SmoothMotion& motion, std::span<const char> is_activ
     const bool known = bound.central || least <= soon * speed;
     BodyGapEnd& gap = out.body_gaps[place];
     gap = {speed, bound.most_acceleration(at.acceleration.data(), of_ground), known};
-    out.gaps[pair] = {known ? gap_in(gap_of(model, place), at) : StepPolynomial::End{least, -speed, 0.0}};
+    out.gaps[pair] = {known ? gap_in(gap_of(model, place), at.on_path())
+                            : StepPolynomial::End{least, -speed, 0.0}};
     finite = finite && std::isfinite(out.gaps[pair].value) && std::isfinite(gap.acceleration);
   }
   return finite;
@@ -96,9 +99,10 @@ Event predict_body_gap(SearchedStep& step, std::span<const double> from, Event b
     rule.until = found.guard == Guard::nothing ? std::numeric_limits<double>::infinity() : found.time;
     const PairGap gap = gap_of(model, place);
     GapLook first{step.begin(), start.body_gaps[place].known, start.gaps[pair]};
-    if (from[pair] > step.begin()) first = {from[pair], true, gap_in(gap, path.sample(from[pair]))};
+    if (from[pair] > step.begin())
+      first = {from[pair], true, gap_in(gap, path.sample(from[pair], PathLook::between))};
     const double time =
-        first_closing(path, gap, rule, first, {step.end(), end.body_gaps[place].known, end.gaps[pair]});
+        predict_closing(path, gap, rule, first, {step.end(), end.body_gaps[place].known, end.gaps[pair]});
     if (time < rule.until) found = {time, Guard::gap, pair};
   }
   return found;

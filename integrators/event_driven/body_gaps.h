@@ -2,7 +2,7 @@
 
 /// \file
 /// Gaps of two bodies of one clock group within a step: their values and rates, and when the first of them
-/// closes (pair_closing.h).
+/// closes (first_closing.h).
 
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event.h>
