@@ -37,7 +37,7 @@ double turn_of(const PairGap& of, const PathSample& at) {
   const auto spin_of = [&](const BodySlot& body) {
     return body.v_size > 2 ? std::abs(at.state.v[body.v + 2]) : 0.0;
   };
-  return spin_of(of.bound.a) + (of.bound.on_ground ? 0.0 : spin_of(of.bound.b));
+  return spin_of(of.bound->a) + (of.bound->on_ground ? 0.0 : spin_of(of.bound->b));
 }
 
 /// The first closing of a gap that is no polynomial: intervals in which the nearest feature may change, or in
@@ -59,7 +59,7 @@ private:
     FeatureLook out;
     out.gap = {time, gap_in(*pair_, at), 0.0};
     out.turn = turn_of(*pair_, at);
-    if (pair_->bound.round) {
+    if (pair_->bound->round) {
       out.margin = std::numeric_limits<double>::infinity();
       return out;
     }
@@ -97,10 +97,10 @@ private:
   /// Of two discs: without the kink that a distance has. It closes as the gap does, at another rate. Two
   /// points without rounding have a kink where they meet, and do not touch.
   [[nodiscard]] QuantityLook smoothed(QuantityLook look) const {
-    if (is_smoothed()) look.at = smooth_gap(look.at, pair_->bound.rounding);
+    if (is_smoothed()) look.at = smooth_gap(look.at, pair_->bound->rounding);
     return look;
   }
-  [[nodiscard]] bool is_smoothed() const { return pair_->bound.round && pair_->bound.rounding > 0.0; }
+  [[nodiscard]] bool is_smoothed() const { return pair_->bound->round && pair_->bound->rounding > 0.0; }
 
   // True of a gap that moves by less than what counts as found, by its values and rates at two looks.
   [[nodiscard]] bool hardly_moves(const QuantityLook& from, const QuantityLook& to) const {
@@ -127,7 +127,7 @@ bool has_kinks(const BodyPairBound& bound) {
 }
 
 StepPolynomial::End gap_in(const PairGap& of, const PathSample& at) {
-  if (of.bound.central) return gap_of_discs(of.bound, at);
+  if (of.bound != nullptr && of.bound->central) return gap_of_discs(*of.bound, at);
   Constraint contact;
   of.detector.contact(of.pair, at.state, at.evaluation, at.places, contact);
   return {contact.gap, contact.normal_velocity(at.state.v), contact.normal_acceleration(at.acceleration)};
@@ -141,21 +141,24 @@ StepPolynomial::End smooth_gap(const StepPolynomial::End& gap, double rho) {
 
 double predict_closing(PairPath& path, const PairGap& of, const ClosingRule& how, const GapLook& from,
                        const GapLook& to, PathLook looks) {
-  const BodyPairBound& bound = of.bound;
+  const BodyPairBound* const bound = of.bound;
   FallRule rule;
   rule.raise = how.noise - how.level;
   rule.fine = how.fine;
   rule.clear_falls = false;  // of several gaps the first is wanted
   constexpr int least_of_moving = 2;
-  if (moves(of.detector, of.pair)) rule.least_depth = least_of_moving;
-  if (has_kinks(bound)) {
+  const bool moving = moves(of.detector, of.pair);
+  if (moving) rule.least_depth = least_of_moving;
+  if (bound != nullptr && has_kinks(*bound)) {
     rule.fastest = how.fastest;
     return KinkedSearch(path, looks, of, rule, how.until).first(from.time, to.time);
   }
-  const bool smooth = bound.rounding > 0.0;
-  rule.measured = !(bound.central && smooth && how.flies_freely);
+  const bool smooth = bound != nullptr && bound->rounding > 0.0;
+  // The error that turning makes of a flat boundary is bounded beforehand.
+  const bool is_bounded = bound == nullptr ? !moving : bound->central && smooth;
+  rule.measured = !(is_bounded && how.flies_freely);
   const auto look = [&](double time, const StepPolynomial::End& gap) -> QuantityLook {
-    return {time, smooth ? smooth_gap(gap, bound.rounding) : gap, 0.0};
+    return {time, smooth ? smooth_gap(gap, bound->rounding) : gap, how.sixth};
   };
   QuantityOf gap([&](double time) { return look(time, gap_in(of, path.sample(time, looks))); });
   const auto at_end = [&](const GapLook& end) {

@@ -10,8 +10,8 @@
 /// alone only where its values at two looks and a bound of its rate exclude the level between them; in free
 /// flight, where velocities of centres are linear in time and spins constant, the bound is exact. Of two
 /// discs with radii of sum rho and centres d apart (d^2 - rho^2)/(2 rho) is searched, which has the same zero
-/// and rate there and in free flight is a polynomial of degree 4 at most. What is as wrong as its bound is
-/// too small, by more than `ClosingRule::fine`, may hide a closing: bounds are the caller's word.
+/// and rate there and in free flight is a polynomial of degree 4 at most. Bounds are the caller's word:
+/// one that is too small may hide a closing, and nothing says so.
 ///
 /// Looks may be taken from an interpolation. The closing that they lead to is then found on the exact motion,
 /// each look at which may cost much.
@@ -29,11 +29,11 @@
 
 namespace carom {
 
-/// A pair of a vertex and an outline of two bodies, with the bounds of its gap.
+/// A pair, with the bounds of its gap.
 struct PairGap {
   const Detector& detector;
   const ContactPair& pair;
-  const BodyPairBound& bound;
+  const BodyPairBound* bound;  ///< of a pair with an outline; null: a point and a flat boundary, or a limit
 };
 
 /// Motion of both sides of a pair at one time of a path. A view.
@@ -73,9 +73,10 @@ struct ClosingRule {
   double level = 0.0;         ///< a gap closes where it falls below this by the noise, <= 0 [m]
   double fastest = never;     ///< bound of its rate [m/s]
   bool flies_freely = false;  ///< both bodies: nothing but constant fields acts
-  double until = never;       ///< later closings are of no interest [s]
-  double found = 0.0;         ///< a gap this near the level on the exact motion has closed there [m]
-  double slow = 0.0;          ///< rates up to this are none [m/s]
+  double sixth = 0.0;    ///< of a pair without an outline, by turning: bound of its sixth derivative [m/s^6]
+  double until = never;  ///< later closings are of no interest [s]
+  double found = 0.0;    ///< a gap this near the level on the exact motion has closed there [m]
+  double slow = 0.0;     ///< rates up to this are none [m/s]
   /// An interpolation that is this far off the exact gap at the closing that it leads to is given up: all
   /// looks are exact then [m].
   double misleading = never;
