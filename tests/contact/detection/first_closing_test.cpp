@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -54,11 +55,6 @@ public:
       acceleration_[i + 1] = of_all[1];
     }
   }
-  /// The first body alone accelerates so [m/s^2].
-  void set_acceleration_of_first(const Vec<2>& of_first) {
-    acceleration_[0] = of_first[0];
-    acceleration_[1] = of_first[1];
-  }
   /// Looks between exact ones are this wrong at t = 0.5 s [m].
   void set_error(double error) { error_ = error; }
   [[nodiscard]] int looks() const { return looks_; }
@@ -86,7 +82,7 @@ public:
       if (pair.has_outline()) bound = bound_of_pair(model_.assembly, detector_, pair);
       if (bound && !bound->closes_alone()) continue;
       const PairGap gap{detector_, pair, bound ? &*bound : nullptr};
-      GapLook ends[2] = {{0.0}, {end}};
+      std::array<GapLook, 2> ends{GapLook{0.0}, GapLook{end}};
       double speed = 0.0;
       for (GapLook& look : ends) {
         const PathSample at = sample(look.time, PathLook::exact);
