@@ -2,9 +2,9 @@
 
 #include <carom/core/discontinuity.h>
 #include <carom/core/numerics/never.h>
-#include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/event_detector.h>
 #include <carom/integrators/event_driven/event_location.h>
+#include <carom/integrators/event_driven/group_gaps.h>
 #include <carom/integrators/event_driven/path_check.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
-// Problem: the zero of a guard, each value of which costs a step.
+// Problem: the zero of a guard of forces, sliding, features or elements, each value of which costs a step.
 
 #include <carom/integrators/event_driven/event_location.h>
+#include <carom/integrators/event_driven/group_gaps.h>
 #include <carom/integrators/event_driven/unbounded_forces.h>
 
 #include <algorithm>
@@ -50,12 +51,6 @@ struct Bracket {
   }
 };
 
-/// Level through which a gap closes [m].
-double closing_level(const SearchedStep& step, std::size_t pair) {
-  if (!step.is_exact(pair)) return step.ends.gap_level(pair);
-  return step.ends.closing_level(pair, step.scales.speed_noise, step.motion.model().options->gap_tolerance);
-}
-
 Bracket bracket_of(const SearchedStep& step, const Event& predicted) {
   constexpr double near = 1e-3;  // of the step
   const double length = step.end() - step.begin();
@@ -70,9 +65,6 @@ Bracket bracket_of(const SearchedStep& step, const Event& predicted) {
     bracket.f_low = predicted.sign * start.guards[predicted.which].value;
     bracket.f_high = predicted.sign * end.guards[predicted.which].value;
     bracket.below = bracket.f_high < 0.0;
-  } else if (predicted.guard == Guard::gap && step.is_exact(predicted.which)) {
-    // It may be between the last time before the end of the step and that end.
-    bracket.below = step.ends.end().gaps[predicted.which].value < closing_level(step, predicted.which);
   }
   return bracket;
 }
@@ -82,12 +74,6 @@ Remainder remainder_of(SearchedStep& step, const MotionSample& at, const Event& 
                        GuardSample& memory) {
   const double* const velocity = at.state.v.data();
   SmoothMotion& motion = step.motion;
-  if (predicted.guard == Guard::gap) {
-    Constraint contact;
-    motion.contact(predicted.which, at, contact);
-    return {contact.gap - closing_level(step, predicted.which), contact.normal_velocity(velocity),
-            step.scales.gap_noise / 16.0, true};
-  }
   if (predicted.guard == Guard::slip) {
     const ActiveContact& closed = motion.active().list()[predicted.which];
     const double sign = closed.slip_sign();
@@ -135,6 +121,7 @@ double next_time(Bracket& at, double time, const Remainder& rest, bool halve) {
 }  // namespace
 
 Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing) {
+  if (predicted.guard == Guard::gap) return locate_gap(step, predicted, landing);
   constexpr int most_landings = 60;
   std::vector<double>& y = step.memory.y;
   y.resize(step.motion.size());
@@ -151,11 +138,7 @@ Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing)
     step.flow.land(time, y);
     step.motion.sample(time, y.data(), Forces::all, step.memory.within);
     const Remainder rest = remainder_of(step, step.memory.within, predicted, step.memory.located);
-    // Between the ends of steps of low order a gap may seem to fall while its rate says that it does not.
-    const bool opens =
-        predicted.guard == Guard::gap &&
-        std::min(rest.rate, step.ends.start().gaps[predicted.which].first) >= -step.scales.speed_noise;
-    if ((std::abs(rest.value) <= rest.noise && !opens) || at.low == at.high) {
+    if (std::abs(rest.value) <= rest.noise || at.low == at.high) {
       landing.time = time;
       landing.y.assign(y.begin(), y.end());
       return {time, predicted.guard, predicted.which, predicted.sign};
@@ -165,10 +148,10 @@ Event locate_event(SearchedStep& step, const Event& predicted, Landing& landing)
     if (rises) {
       at.take_rising(time, rest.value);
     } else {
-      at.take(time, rest.value, rest.value > 0.0 || opens);
+      at.take(time, rest.value, rest.value > 0.0);
     }
     if (at.high - at.low <= 2.0 * std::numeric_limits<double>::epsilon() * at.scale) break;
-    time = next_time(at, time, rest, opens || at.rises || i % 8 == 7);
+    time = next_time(at, time, rest, at.rises || i % 8 == 7);
   }
   // From large to large of the other sign: no zero of the forces but a pole.
   const double large = UnboundedForces::growth * step.scales.force;

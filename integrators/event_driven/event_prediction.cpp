@@ -3,8 +3,8 @@
 
 #include <carom/core/numerics/fall_search.h>
 #include <carom/core/numerics/never.h>
-#include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/event_prediction.h>
+#include <carom/integrators/event_driven/group_gaps.h>
 
 #include <algorithm>
 
@@ -133,42 +133,6 @@ Event predict_event(SearchedStep& step, const FalseAlarms& passed_over) {
   predict_forces(step, sampler, passed_over, found);
   if (!end.guards.empty()) predict_switching_points(step, sampler, found);
   return found;
-}
-
-/// For a body that flies freely the error that turning makes is bounded beforehand.
-Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event before) {
-  constexpr int least_of_moving = 2;
-  const StepEnd &start = step.ends.start(), &end = step.ends.end();
-  Event found = before;
-  for (std::size_t i = 0; i < step.motion.model().pairs.size(); ++i) {
-    if (step.is_active[i] != 0 || step.motion.model().bound_of(i) != none) continue;
-    if (passed_over.gaps[i] >= step.end()) continue;
-    // The flow does not know the motion of shapes on ground.
-    const bool moving = moves(*step.motion.model().detector, step.motion.model().pairs[i]);
-    FallRule rule;
-    rule.raise = step.scales.gap_noise - step.ends.gap_level(i);
-    // Far away gaps are not known better than to their rounding.
-    rule.fine = std::max(fine_gap(*step.motion.model().options), step.scales.gap_noise);
-    rule.clear_falls = false;  // of several gaps the first is wanted
-    rule.measured = moving || !step.motion.is_ballistic();
-    rule.least_depth = moving ? least_of_moving : 0;
-    const double curvature = std::max(start.gaps[i].curvature_bound, end.gaps[i].curvature_bound);
-    QuantityOf gap([&](double time) -> QuantityLook {
-      const MotionSample& at = step.sample_for_gaps(time);
-      Constraint contact;
-      step.motion.contact(i, at, contact);
-      return {time,
-              {contact.gap, contact.normal_velocity(at.state.v.data()),
-               contact.normal_acceleration(at.acceleration.data())},
-              curvature};
-    });
-    const bool whole = passed_over.gaps[i] <= step.begin();
-    const QuantityLook from =
-        whole ? QuantityLook{step.begin(), start.gaps[i], curvature} : gap.look(passed_over.gaps[i]);
-    const double time = FallSearch(gap, rule, until(found)).first(from, {step.end(), end.gaps[i], curvature});
-    if (time < until(found)) found = {time, Guard::gap, i};
-  }
-  return predict_body_gap(step, passed_over.gaps, found);
 }
 
 }  // namespace carom

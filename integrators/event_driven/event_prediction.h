@@ -1,7 +1,8 @@
 #pragma once
 
 /// \file
-/// First event in a step by polynomials of its guards: gaps to rounding, other guards to a part of the step.
+/// First event in a step by polynomials of its guards: gaps (group_gaps.h) to rounding, other guards to a
+/// part of the step.
 
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event.h>
@@ -11,7 +12,5 @@ namespace carom {
 
 /// The first event, or `nothing` at the end of the step.
 [[nodiscard]] CAROM_API Event predict_event(SearchedStep& step, const FalseAlarms& passed_over);
-/// The first closing of a gap before an event, else that event.
-[[nodiscard]] CAROM_API Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event before);
 
 }  // namespace carom

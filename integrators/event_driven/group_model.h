@@ -3,6 +3,7 @@
 /// \file
 /// Facts of one clock group that its motion from event to event does not change.
 
+#include <carom/contact/detection/body_pair_bound.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
@@ -10,7 +11,6 @@
 #include <carom/core/export.h>
 #include <carom/core/layout.h>
 #include <carom/core/state.h>
-#include <carom/integrators/event_driven/body_pair_bound.h>
 #include <carom/integrators/event_driven/group_joints.h>
 #include <carom/integrators/event_driven/motion_sample.h>
 #include <carom/integrators/event_driven/motion_unknowns.h>

@@ -20,10 +20,10 @@ public:
   FreePath(const BodyPairBound& bound, const BodyFlight& a, const BodyFlight& b, MotionSample& out)
       : bound_(&bound), a_(&a), b_(&b), out_(&out) {}
 
-  [[nodiscard]] const MotionSample& sample(double time) override {
+  [[nodiscard]] PathSample sample(double time, PathLook /*how*/) override {
     write(bound_->a, *a_, time);
     write(bound_->b, *b_, time);
-    return *out_;
+    return out_->on_path();
   }
 
 private:
@@ -45,44 +45,19 @@ private:
 /// Two groups within their steps.
 class GroupsPath final : public PairPath {
 public:
-  GroupsPath(ClockGroup& a, ClockGroup& b, bool landed, Forces forces, MotionSample& out)
-      : a_(&a), b_(&b), landed_(landed), forces_(forces), out_(&out) {}
+  GroupsPath(ClockGroup& a, ClockGroup& b, MotionSample& out) : a_(&a), b_(&b), out_(&out) {}
 
-  [[nodiscard]] const MotionSample& sample(double time) override {
-    JoinableGroup(*a_).sample(time, landed_, forces_, *out_);
-    JoinableGroup(*b_).sample(time, landed_, forces_, *out_);
-    return *out_;
+  [[nodiscard]] PathSample sample(double time, PathLook how) override {
+    const bool landed = how != PathLook::between;
+    const Forces forces = how == PathLook::exact_rates ? Forces::without_contact : Forces::all;
+    JoinableGroup(*a_).sample(time, landed, forces, *out_);
+    JoinableGroup(*b_).sample(time, landed, forces, *out_);
+    return out_->on_path();
   }
 
 private:
   ClockGroup *a_, *b_;
-  bool landed_;
-  Forces forces_;
   MotionSample* out_;
-};
-
-/// Where a gap closes, between a time at which it is open and falls and a later one: at that it is closed, or
-/// open and rises, so that the closing may lie before it, or it is the end of the span.
-struct ClosingBracket {
-  double low, high;
-  double scale;  // of times: what is narrow against it is rounding [s]
-  bool rises = false;
-
-  void take(double time, double rest, double rate) {
-    rises = rest > 0.0 && rate >= 0.0;
-    (rest > 0.0 && !rises ? low : high) = time;
-  }
-  [[nodiscard]] bool is_narrow() const {
-    return high - low <= 2.0 * std::numeric_limits<double>::epsilon() * scale;
-  }
-  /// The next time to try. What is open by less than the clock can tell closes at the next time that it can:
-  /// halfway to the far end the gap may be open again. \param ahead how far the time is ahead of the closing
-  [[nodiscard]] double next(double time, double ahead, bool halve) const {
-    const double beside = std::nextafter(time, ahead > 0.0 ? low : high);
-    double next = time - ahead;
-    if (next == time) next = beside;
-    return next > low && next < high && !halve && !rises ? next : 0.5 * (low + high);
-  }
 };
 
 }  // namespace
@@ -159,100 +134,36 @@ double MeetingSearch::noise(const Bodies& bodies, const BodyPairBound& bound) co
 double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, double end) {
   const BodyPairBound bound = bound_of_pair(*assembly_, *detector_, pair);
   if (!bound.closes_alone()) return never;
-  const PairGap gap{*assembly_, *detector_, pair, bound};
+  const PairGap gap{*detector_, pair, &bound};
   ClosingRule rule;
   rule.noise = noise(bodies, bound);
   rule.fine = std::max(fine_gap(*options_), rule.noise);  // far from the origin gaps are not known better
+  rule.found = 0.25 * rule.noise;
   rule.flies_freely = bodies.a.is_free && bodies.b.is_free;
-  rule.until = never;
   if (rule.flies_freely && bound.central && bound.rounding > 0.0) {
     FreePath path(bound, flights_->of(pair.body), flights_->of(pair.other), at_);
-    const GapLook from{begin, true, gap_in(gap, path.sample(begin))};
-    const GapLook to{end, true, gap_in(gap, path.sample(end))};
+    const GapLook from{begin, true, gap_in(gap, path.sample(begin, PathLook::exact))};
+    const GapLook to{end, true, gap_in(gap, path.sample(end, PathLook::exact))};
     rule.level = std::min(0.0, from.gap.value);
-    double time = first_closing(path, gap, rule, from, to);
-    if (!(time < never)) return never;
-    time = std::clamp(time, begin, end);
-    // Fast bodies may be apart yet at a time that is rounded down, and would be met there again and again.
-    constexpr int most_roundings = 8;
-    for (int i = 0; i < most_roundings && time < end; ++i) {
-      if (gap_in(gap, path.sample(time)).value <= rule.level + rule.noise) break;
-      time = std::nextafter(time, end);
-    }
-    return time;
+    return first_closing(path, gap, rule, from, to);
   }
   double speed = 0.0, pull = 0.0;
   const auto look = [&](double time, GroupSamples& samples) -> GapLook {
     const MotionSample& at = samples.at(time, bodies.of_a, bodies.of_b);
     speed = std::max(speed, bound.most_speed(at.state.v.data(), nullptr));
     pull = std::max(pull, bound.most_speed(at.acceleration.data(), nullptr));
-    return {time, true, gap_in(gap, at)};
+    return {time, true, gap_in(gap, at.on_path())};
   };
   const GapLook from = look(begin, begins_), to = look(end, ends_);
   constexpr double unseen = 2.0;
+  constexpr double of_tolerances = 10.0;  // errors up to this are those of tolerances
   rule.fastest = speed + (rule.flies_freely ? 0.0 : unseen * (end - begin) * pull);
   rule.level = std::min(0.0, from.gap.value);
-  return located(bodies, gap, rule, from, to, {});
-}
-
-/// The first closing between two looks, located. Where a closing that was predicted is none, the motion after
-/// it is searched anew. A gap that opens where its value falls does not close: within steps of low order
-/// values and rates contradict each other by the tolerance, and it is searched for what is deeper than that.
-/// A step may be wrong far behind its own event, and what is interpolated in front of it too: where that is
-/// not the motion that is landed on, the search is made in landings.
-double MeetingSearch::located(const Bodies& bodies, const PairGap& gap, ClosingRule& rule,
-                              const GapLook& from, const GapLook& to, const Depth& at_depth) {
-  constexpr int most_landings = 60, deepest = 20;
-  constexpr double growth = 4.0;  // of what the level is lowered by
-  const double slow = speed_noise_of(rule.fastest, options_->absolute_tolerance);
-  const double interpolated = 10.0 * options_->gap_tolerance;  // errors up to this are those of tolerances
-  if (from.gap.value + to.gap.value - rule.fastest * (to.time - from.time) > 2.0 * rule.noise) return never;
-  GroupsPath looks(bodies.of_a, bodies.of_b, at_depth.landed, Forces::all, at_);
-  // Values and rates of a gap are asked for, its acceleration is not.
-  GroupsPath landings(bodies.of_a, bodies.of_b, true, Forces::without_contact, at_);
-  double time = first_closing(looks, gap, rule, from, to);
-  if (!(time < never)) return never;
-  ClosingBracket at{from.time, to.time, std::max(std::abs(to.time), to.time - from.time)};
-  time = std::clamp(time, at.low, at.high);
-  for (int i = 0; i < most_landings; ++i) {
-    const StepPolynomial::End landed = gap_in(gap, landings.sample(time));
-    if (i == 0 && !at_depth.landed &&
-        std::abs(gap_in(gap, looks.sample(time)).value - landed.value) > interpolated) {
-      GroupsPath landed_looks(bodies.of_a, bodies.of_b, true, Forces::all, at_);
-      const GapLook begin{from.time, true, gap_in(gap, landed_looks.sample(from.time))},
-          end{to.time, true, gap_in(gap, landed_looks.sample(to.time))};
-      rule.level = std::min(0.0, begin.gap.value);
-      return located(bodies, gap, rule, begin, end, {at_depth.halvings, true});
-    }
-    const double rest = landed.value - rule.level;
-    if (std::min(landed.first, from.gap.first) >= -slow && std::abs(rest) <= 0.25 * rule.noise &&
-        at_depth.drift < options_->gap_tolerance) {
-      const double drift = std::min(growth * std::max(at_depth.drift, rule.noise), options_->gap_tolerance);
-      rule.level -= drift - at_depth.drift;
-      return located(bodies, gap, rule, from, to, {at_depth.halvings, at_depth.landed, drift});
-    }
-    if (std::abs(rest) <= 0.25 * rule.noise && !(landed.first >= 0.0 && time == from.time)) return time;
-    if (rest > 0.0 && landed.first >= 0.0 && i == 0) break;
-    at.take(time, rest, landed.first);
-    if (at.is_narrow()) {
-      if (!at.rises) return at.high;
-      time = at.high;
-      break;
-    }
-    time = at.next(time, rest / landed.first, i % 8 == 7);
-  }
-  if (at_depth.halvings == deepest) return never;
-  // It opens there: halves are searched each by itself.
-  const bool progress = time > from.time && time < to.time;
-  const double between = progress ? time : 0.5 * (from.time + to.time);
-  if (!(between > from.time && between < to.time)) return never;
-  const GapLook middle{between, true, gap_in(gap, looks.sample(between))};
-  const Depth deeper{at_depth.halvings + 1, at_depth.landed, at_depth.drift};
-  if (!progress) {
-    const double first = located(bodies, gap, rule, from, middle, deeper);
-    if (first < never) return first;
-  }
-  return located(bodies, gap, rule, middle, to, deeper);
+  rule.slow = speed_noise_of(rule.fastest, options_->absolute_tolerance);
+  rule.misleading = of_tolerances * options_->gap_tolerance;
+  rule.contradiction = options_->gap_tolerance;
+  GroupsPath path(bodies.of_a, bodies.of_b, at_);
+  return first_closing(path, gap, rule, from, to);
 }
 
 /// The least gap of two bodies at a time, or a lower bound of it.
@@ -262,13 +173,13 @@ double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, const Bodie
   double least = never;
   for (const ContactPair& pair : pairs_) {
     const BodyPairBound bound = bound_of_pair(*assembly_, *detector_, pair);
-    const PairGap gap{*assembly_, *detector_, pair, bound};
+    const PairGap gap{*detector_, pair, &bound};
     if (bodies.a.is_free && bodies.b.is_free && bound.central) {
       const Vec<2> apart = bodies.a.place_at(time) - bodies.b.place_at(time);
       least = std::min(least, apart.norm() - bound.rounding);
       continue;
     }
-    least = std::min(least, gap_in(gap, begins_.at(time, bodies.of_a, bodies.of_b)).value);
+    least = std::min(least, gap_in(gap, begins_.at(time, bodies.of_a, bodies.of_b).on_path()).value);
   }
   return least;
 }

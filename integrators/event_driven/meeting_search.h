@@ -3,16 +3,16 @@
 /// \file
 /// When bodies of one clock group meet those of others, and which of them touch at a time.
 
+#include <carom/contact/detection/body_pair_bound.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/first_closing.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/body_flights.h>
-#include <carom/integrators/event_driven/body_pair_bound.h>
 #include <carom/integrators/event_driven/group_set.h>
 #include <carom/integrators/event_driven/meeting_queue.h>
 #include <carom/integrators/event_driven/motion_sample.h>
-#include <carom/integrators/event_driven/pair_closing.h>
 
 #include <array>
 #include <utility>
@@ -68,17 +68,9 @@ private:
     const BodyFlight &a, &b;
     ClockGroup &of_a, &of_b;
   };
-  /// How deep the search for a closing is.
-  struct Depth {
-    int halvings = 0;
-    bool landed = false;  ///< in motion as accurate as steps
-    double drift = 0.0;   ///< for gaps that fall deeper than by this [m]
-  };
   template <class F>
   void for_neighbours(ClockGroup& group, F&& f);
   [[nodiscard]] double closing(const Bodies& bodies, const ContactPair& pair, double begin, double end);
-  [[nodiscard]] double located(const Bodies& bodies, const PairGap& gap, ClosingRule& rule,
-                               const GapLook& from, const GapLook& to, const Depth& at_depth);
   [[nodiscard]] double least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time);
   [[nodiscard]] double noise(const Bodies& bodies, const BodyPairBound& bound) const;
 

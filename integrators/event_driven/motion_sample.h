@@ -4,6 +4,7 @@
 /// One state (t, y) of a clock group, evaluated; stages of an event and the search for events read it.
 
 #include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/first_closing.h>
 #include <carom/core/assembly.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/export.h>
@@ -44,6 +45,8 @@ struct CAROM_API MotionSample {
 
   /// The state.
   [[nodiscard]] StateView view() const { return state.view(); }
+  /// The motion of bodies, as a look at a path.
+  [[nodiscard]] PathSample on_path() const { return {view(), acceleration.data(), evaluation, places}; }
   /// Configuration that joints are evaluated at.
   [[nodiscard]] JointView joint_view() const { return {state.view(), evaluation.rotation.data()}; }
 

@@ -1,8 +1,8 @@
 // Problem: read off a state all that may end a smooth phase, with its rounding.
 
-#include <carom/integrators/event_driven/body_gaps.h>
 #include <carom/integrators/event_driven/detection_memory.h>
 #include <carom/integrators/event_driven/group_closure.h>
+#include <carom/integrators/event_driven/group_gaps.h>
 #include <carom/integrators/event_driven/step_ends.h>
 
 #include <algorithm>

@@ -32,7 +32,7 @@ const std::vector<Room> rooms = {
     {"bodies", {"core", "core/numerics"}},
     {"joints", {"core", "core/numerics"}},
     {"core/dynamics", {"core", "core/numerics"}},
-    {"contact/detection", {"core", "bodies/shape_"}},
+    {"contact/detection", {"core", "core/numerics", "bodies/shape_"}},
     {"contact/solvers", {"core", "core/numerics"}},
     {"contact", {"core", "core/numerics", "core/dynamics", "contact/detection", "contact/solvers"}},
     {"integrators/flow", {"core", "core/numerics"}},

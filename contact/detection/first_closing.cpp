@@ -1,9 +1,9 @@
 // Problem: the first closing of a gap whose rate may have kinks.
 
 #include <carom/contact/detection/feature_margin.h>
+#include <carom/contact/detection/first_closing.h>
 #include <carom/core/numerics/fall_search.h>
 #include <carom/core/numerics/never.h>
-#include <carom/integrators/event_driven/pair_closing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace carom {
 namespace {
 
 /// Of two discs around their centres of mass without a contact: d = |c_a - c_b|.
-StepPolynomial::End gap_of_discs(const BodyPairBound& bound, const MotionSample& at) {
-  const std::vector<double>&q = at.state.q, &v = at.state.v, &a = at.acceleration;
+StepPolynomial::End gap_of_discs(const BodyPairBound& bound, const PathSample& at) {
+  const double *const q = at.state.q, *const v = at.state.v, *const a = at.acceleration;
   const double x = q[bound.a.q] - q[bound.b.q], y = q[bound.a.q + 1] - q[bound.b.q + 1];
   const double u = v[bound.a.v] - v[bound.b.v], w = v[bound.a.v + 1] - v[bound.b.v + 1];
   const double b = a[bound.a.v] - a[bound.b.v], c = a[bound.a.v + 1] - a[bound.b.v + 1];
@@ -33,11 +33,11 @@ struct FeatureLook {
 };
 
 /// How fast both sides of a pair turn, together [rad/s].
-double turn_of(const PairGap& of, const MotionSample& at) {
+double turn_of(const PairGap& of, const PathSample& at) {
   const auto spin_of = [&](const BodySlot& body) {
     return body.v_size > 2 ? std::abs(at.state.v[body.v + 2]) : 0.0;
   };
-  return spin_of(of.bound.a) + (of.bound.on_ground ? 0.0 : spin_of(of.bound.b));
+  return spin_of(of.bound->a) + (of.bound->on_ground ? 0.0 : spin_of(of.bound->b));
 }
 
 /// The first closing of a gap that is no polynomial: intervals in which the nearest feature may change, or in
@@ -47,24 +47,24 @@ double turn_of(const PairGap& of, const MotionSample& at) {
 /// counted.
 class KinkedSearch {
 public:
-  KinkedSearch(PairPath& path, const PairGap& pair, const FallRule& rule, double until)
-      : path_(&path), pair_(&pair), rule_(rule), until_(until) {}
+  KinkedSearch(PairPath& path, PathLook how, const PairGap& pair, const FallRule& rule, double until)
+      : path_(&path), how_(how), pair_(&pair), rule_(rule), until_(until) {}
 
   [[nodiscard]] double first(double begin, double end) { return between(look(begin), look(end), 0); }
 
 private:
   [[nodiscard]] FeatureLook look(double time) {
     ++looks_;
-    const MotionSample& at = path_->sample(time);
+    const PathSample at = path_->sample(time, how_);
     FeatureLook out;
     out.gap = {time, gap_in(*pair_, at), 0.0};
     out.turn = turn_of(*pair_, at);
-    if (pair_->bound.round) {
+    if (pair_->bound->round) {
       out.margin = std::numeric_limits<double>::infinity();
       return out;
     }
     const OutlinePair outlines =
-        outline_pair(pair_->detector, pair_->pair, at.view(), at.evaluation, at.places);
+        outline_pair(pair_->detector, pair_->pair, at.state, at.evaluation, at.places);
     const FeatureRegions regions(outlines);
     // So has ground that a vertex has come through, or whose depth ends: beyond it the gap is positive again.
     has_two_sides_ = outlines.chain || (outlines.is_sharp() && FeatureRegions::is_flat(outlines.outline));
@@ -82,7 +82,9 @@ private:
     const bool smooth = from.feature == to.feature && from.margin + to.margin > way &&
                         std::max(from.turn, to.turn) * (end - begin) <= far;
     if (smooth || depth == deepest || looks_ > most_looks || hardly_moves(from.gap, to.gap)) {
-      QuantityOf gap([&](double time) { return smoothed({time, gap_in(*pair_, path_->sample(time)), 0.0}); });
+      QuantityOf gap([&](double time) {
+        return smoothed({time, gap_in(*pair_, path_->sample(time, how_)), 0.0});
+      });
       FallRule rule = rule_;
       if (is_smoothed()) rule.fastest = std::numeric_limits<double>::infinity();
       return FallSearch(gap, rule, until_).first(smoothed(from.gap), smoothed(to.gap));
@@ -95,10 +97,10 @@ private:
   /// Of two discs: without the kink that a distance has. It closes as the gap does, at another rate. Two
   /// points without rounding have a kink where they meet, and do not touch.
   [[nodiscard]] QuantityLook smoothed(QuantityLook look) const {
-    if (is_smoothed()) look.at = smooth_gap(look.at, pair_->bound.rounding);
+    if (is_smoothed()) look.at = smooth_gap(look.at, pair_->bound->rounding);
     return look;
   }
-  [[nodiscard]] bool is_smoothed() const { return pair_->bound.round && pair_->bound.rounding > 0.0; }
+  [[nodiscard]] bool is_smoothed() const { return pair_->bound->round && pair_->bound->rounding > 0.0; }
 
   // True of a gap that moves by less than what counts as found, by its values and rates at two looks.
   [[nodiscard]] bool hardly_moves(const QuantityLook& from, const QuantityLook& to) const {
@@ -108,6 +110,7 @@ private:
 
   static constexpr int most_looks = 10000;  // some hundred isolated kinks
   PairPath* path_;
+  PathLook how_;
   const PairGap* pair_;
   FallRule rule_;
   double until_;
@@ -123,12 +126,11 @@ bool has_kinks(const BodyPairBound& bound) {
   return !bound.round || feels_turns;
 }
 
-StepPolynomial::End gap_in(const PairGap& of, const MotionSample& at) {
-  if (of.bound.central) return gap_of_discs(of.bound, at);
+StepPolynomial::End gap_in(const PairGap& of, const PathSample& at) {
+  if (of.bound != nullptr && of.bound->central) return gap_of_discs(*of.bound, at);
   Constraint contact;
-  of.detector.contact(of.pair, at.view(), at.evaluation, at.places, contact);
-  return {contact.gap, contact.normal_velocity(at.state.v.data()),
-          contact.normal_acceleration(at.acceleration.data())};
+  of.detector.contact(of.pair, at.state, at.evaluation, at.places, contact);
+  return {contact.gap, contact.normal_velocity(at.state.v), contact.normal_acceleration(at.acceleration)};
 }
 
 StepPolynomial::End smooth_gap(const StepPolynomial::End& gap, double rho) {
@@ -137,30 +139,111 @@ StepPolynomial::End smooth_gap(const StepPolynomial::End& gap, double rho) {
           part * gap.second + gap.first * gap.first / rho};
 }
 
-double first_closing(PairPath& path, const PairGap& of, const ClosingRule& how, const GapLook& from,
-                     const GapLook& to) {
-  const BodyPairBound& bound = of.bound;
+double predict_closing(PairPath& path, const PairGap& of, const ClosingRule& how, const GapLook& from,
+                       const GapLook& to, PathLook looks) {
+  const BodyPairBound* const bound = of.bound;
   FallRule rule;
   rule.raise = how.noise - how.level;
   rule.fine = how.fine;
   rule.clear_falls = false;  // of several gaps the first is wanted
   constexpr int least_of_moving = 2;
-  if (moves(of.detector, of.pair)) rule.least_depth = least_of_moving;
-  if (has_kinks(bound)) {
+  const bool moving = moves(of.detector, of.pair);
+  if (moving) rule.least_depth = least_of_moving;
+  if (bound != nullptr && has_kinks(*bound)) {
     rule.fastest = how.fastest;
-    return KinkedSearch(path, of, rule, how.until).first(from.time, to.time);
+    return KinkedSearch(path, looks, of, rule, how.until).first(from.time, to.time);
   }
-  const bool smooth = bound.rounding > 0.0;
-  rule.measured = !(bound.central && smooth && how.flies_freely);
+  const bool smooth = bound != nullptr && bound->rounding > 0.0;
+  // The error that turning makes of a flat boundary is bounded beforehand.
+  const bool is_bounded = bound == nullptr ? !moving : bound->central && smooth;
+  rule.measured = !(is_bounded && how.flies_freely);
   const auto look = [&](double time, const StepPolynomial::End& gap) -> QuantityLook {
-    return {time, smooth ? smooth_gap(gap, bound.rounding) : gap, 0.0};
+    return {time, smooth ? smooth_gap(gap, bound->rounding) : gap, how.sixth};
   };
-  QuantityOf gap([&](double time) { return look(time, gap_in(of, path.sample(time))); });
+  QuantityOf gap([&](double time) { return look(time, gap_in(of, path.sample(time, looks))); });
   const auto at_end = [&](const GapLook& end) {
     return end.known ? look(end.time, end.gap) : gap.look(end.time);
   };
   const QuantityLook begin = at_end(from);
   return FallSearch(gap, rule, how.until).first(begin, at_end(to));
+}
+
+namespace {
+
+/// Predictions and their places on the exact motion in turn. Where a closing that was predicted is none, the
+/// path after it is searched anew. A step may be wrong far behind its own event, and what is interpolated in
+/// front of it too: where that is not the exact motion, all is searched on that.
+class ClosingOnPath {
+public:
+  ClosingOnPath(PairPath& path, const PairGap& of, const ClosingRule& rule)
+      : path_(&path), of_(&of), rule_(rule) {}
+
+  [[nodiscard]] double first(const GapLook& from, const GapLook& to, int halvings) {
+    using Kind = ClosingRoot::Kind;
+    if (!may_close(from, to)) return never;
+    const double predicted = predict_closing(*path_, *of_, rule_, from, to, looks_);
+    if (!(predicted < never)) return never;
+    const bool is_below = to.known && to.gap.value < rule_.level;
+    const ClosingRoot root = locate_closing(*path_, *of_, rule_, from, to.time, is_below, predicted);
+    if (root.kind == Kind::closes) return root.time;
+    if (root.kind == Kind::misleads) {
+      looks_ = PathLook::exact;
+      rule_.misleading = never;
+      const GapLook begin = look(from.time);
+      rule_.level = std::min(0.0, begin.gap.value);
+      return first(begin, look(to.time), halvings);
+    }
+    if (root.kind == Kind::touches) {
+      if (lowers_level()) return first(from, to, halvings);
+      if (!(root.rate >= 0.0 && root.time == from.time)) return root.time;
+    }
+    return behind(root.time, from, to, halvings);
+  }
+
+private:
+  /// The gap opens at a time: what is before and behind it is searched by itself.
+  [[nodiscard]] double behind(double time, const GapLook& from, const GapLook& to, int halvings) {
+    constexpr int deepest = 20;
+    if (halvings == deepest) return never;
+    const bool progress = time > from.time && time < to.time;
+    const double between = progress ? time : 0.5 * (from.time + to.time);
+    if (!(between > from.time && between < to.time)) return never;
+    const GapLook middle = look(between);
+    if (!progress) {
+      const double closing = first(from, middle, halvings + 1);
+      if (closing < never) return closing;
+    }
+    return first(middle, to, halvings + 1);
+  }
+  /// True if the level was lowered, for a gap that does not fall where it reaches it.
+  [[nodiscard]] bool lowers_level() {
+    constexpr double growth = 4.0;
+    if (!(lowered_ < rule_.contradiction)) return false;
+    const double lowered = std::min(growth * std::max(lowered_, rule_.noise), rule_.contradiction);
+    rule_.level -= lowered - lowered_;
+    lowered_ = lowered;
+    return true;
+  }
+  /// False where values and the bound of the rate exclude a closing, and that the gap comes so near to zero
+  /// that it may be through a side behind which it is positive again.
+  [[nodiscard]] bool may_close(const GapLook& from, const GapLook& to) const {
+    const double way = rule_.fastest * (to.time - from.time);
+    return !(from.gap.value + to.gap.value - way > 2.0 * (rule_.noise - rule_.level));
+  }
+  [[nodiscard]] GapLook look(double time) { return {time, true, gap_in(*of_, path_->sample(time, looks_))}; }
+
+  PairPath* path_;
+  const PairGap* of_;
+  ClosingRule rule_;
+  PathLook looks_ = PathLook::between;
+  double lowered_ = 0.0;  // of the level, for gaps that do not fall [m]
+};
+
+}  // namespace
+
+double first_closing(PairPath& path, const PairGap& of, const ClosingRule& rule, const GapLook& from,
+                     const GapLook& to) {
+  return ClosingOnPath(path, of, rule).first(from, to, 0);
 }
 
 }  // namespace carom

@@ -1,6 +1,6 @@
 // Problem: many pairs of bodies, most of which are far from each other.
 
-#include <carom/integrators/event_driven/body_pair_bound.h>
+#include <carom/contact/detection/body_pair_bound.h>
 
 #include <algorithm>
 #include <cmath>

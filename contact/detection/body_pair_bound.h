@@ -18,14 +18,14 @@ namespace carom {
 /// Bounds of the gap of a pair of two bodies, from the places and velocities of their centres of mass; or of
 /// a body `a` and an outline, or a vertex of one, on ground.
 struct CAROM_API BodyPairBound {
-  std::size_t pair = 0;   ///< its place in GroupModel::pairs
+  std::size_t pair = 0;   ///< its place in the list of pairs that this bound belongs to
   BodySlot a, b;          ///< body of the vertex, and of the outline
   double lever = 0.0;     ///< of the vertex from the centre of mass of `a` [m]
   double reach = 0.0;     ///< of the outline from that of `b`, with its rounding [m]
   double radius = 0.0;    ///< of the rounding of the vertex [m]
   double rounding = 0.0;  ///< of both [m]; 0: the corners are sharp
   bool round = false;     ///< the outline has one vertex: the gap is a distance of two points less a constant
-  bool central = false;   ///< likewise, and these are the centres of mass
+  bool central = false;   ///< the gap is a distance of two centres of mass less a constant
 
   Box<2> box;              ///< around what is on ground, in its frame; `reach` is from the origin of that
   double hollow = 0.0;     ///< radius of a circle on ground that the body is inside of; 0: there is none [m]

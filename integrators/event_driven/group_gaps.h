@@ -1,8 +1,8 @@
 #pragma once
 
 /// \file
-/// Gaps of two bodies of one clock group within a step: their values and rates, and when the first of them
-/// closes (pair_closing.h).
+/// Gaps of one clock group within a step: their values and rates, and when the first of them closes
+/// (first_closing.h).
 
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event.h>
@@ -24,9 +24,11 @@ namespace carom {
 [[nodiscard]] CAROM_API double longest_searched(const SmoothMotion& motion, std::span<const char> is_active,
                                                 const StepEnd& start);
 
-/// The first closing before an event, else that event. \param from by pair: when its gap is looked at first
-/// [s]
-[[nodiscard]] CAROM_API Event predict_body_gap(SearchedStep& step, std::span<const double> from,
-                                               Event before);
+/// The first closing of a gap before an event, else that event: by looks between the ends of the step.
+[[nodiscard]] CAROM_API Event predict_gap(SearchedStep& step, const FalseAlarms& passed_over, Event before);
+
+/// The closing of a gap that was predicted, by steps of the flow that end on it. Returns `restart` where the
+/// gap opens. \param landing out: the state at the event, if a step ended there
+[[nodiscard]] CAROM_API Event locate_gap(SearchedStep& step, const Event& predicted, Landing& landing);
 
 }  // namespace carom
