@@ -2,6 +2,7 @@
 
 #include <carom/integrators/event_driven/mode_decision.h>
 #include <carom/integrators/event_driven/modes_by_motion.h>
+#include <carom/integrators/event_driven/rolling_modes.h>
 
 #include <algorithm>
 #include <cmath>
