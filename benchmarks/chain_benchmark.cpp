@@ -4,7 +4,6 @@
 
 #include <carom/carom.h>
 #include <carom/contact/solvers/pivoting_solvers.h>
-#include <carom/contact/solvers/projection_solver.h>
 
 #include <benchmark/benchmark.h>
 
@@ -115,7 +114,6 @@ void alone(benchmark::State& state) {
 
 void principal_pivoting(benchmark::State& state) { alone<carom::PrincipalPivotingSolver>(state); }
 void lemke(benchmark::State& state) { alone<carom::LemkeSolver>(state); }
-void projection(benchmark::State& state) { alone<carom::ProjectionSolver>(state); }
 
 void contacts(benchmark::internal::Benchmark* timed) {
   for (const int count : {2, 4, 8, 12}) timed->Arg(count);
@@ -125,6 +123,5 @@ BENCHMARK(gauss_seidel_by_hand)->Apply(contacts);
 BENCHMARK(chain)->Apply(contacts);
 BENCHMARK(principal_pivoting)->Apply(contacts);
 BENCHMARK(lemke)->Apply(contacts);
-BENCHMARK(projection)->Apply(contacts);
 
 }  // namespace

@@ -61,26 +61,26 @@ Index ActiveSet::mechanism(Index body) const {
   return response_ == nullptr ? body : assembly_->mechanism(body);
 }
 
-/// Joins mechanisms that touch each other; false if none do.
+/// Finds which contacts are of mechanisms that touch each other; false if none do.
 bool ActiveSet::find_islands() {
   const auto is_of_two = [](const ActiveContact& contact) {
     return contact.at.type == ConstraintType::contact && contact.at.bodies > 1;
   };
   if (std::none_of(contacts_.begin(), contacts_.end(), is_of_two)) return false;
-  Index bodies = 0;
+  std::vector<JoinedNodes>& joined = memory_->joined;
+  joined.clear();
+  Index nodes = 0;
   for (const ActiveContact& contact : contacts_) {
-    for (const Constraint::Block& block : contact.at.blocks) {
-      if (block.body != none) bodies = std::max(bodies, block.body + 1);
-    }
+    const Index first = mechanism(contact.at.body());
+    const Index second = is_of_two(contact) ? mechanism(contact.at.blocks[1].body) : first;
+    joined.push_back({first, second});
+    nodes = std::max({nodes, first + 1, second + 1});
   }
-  memory_->islands.start(bodies);
-  for (const ActiveContact& contact : contacts_) {
-    if (is_of_two(contact))
-      memory_->islands.join(mechanism(contact.at.body()), mechanism(contact.at.blocks[1].body));
-  }
-  memory_->last.resize(bodies);
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    memory_->last[memory_->islands.find(mechanism(contacts_[i].at.body()))] = i;
+  memory_->last.resize(contacts_.size());
+  for (const Range& island : memory_->islands.arrange(joined, nodes)) {
+    const std::span<const Index> members =
+        memory_->islands.order().subspan(island.begin, island.end - island.begin);
+    for (const Index contact : members) memory_->last[contact] = members.back();
   }
   return true;
 }
@@ -94,9 +94,7 @@ void ActiveSet::for_groups(F&& f) {
   for (std::size_t first = 0; first < contacts_.size();) {
     std::size_t last = first + 1;
     if (islands) {
-      for (std::size_t i = first; i < last; ++i) {
-        last = std::max(last, memory_->last[memory_->islands.find(mechanism(contacts_[i].at.body()))] + 1);
-      }
+      for (std::size_t i = first; i < last; ++i) last = std::max(last, std::size_t{memory_->last[i]} + 1);
     } else {
       const Index of_first = mechanism(contacts_[first].at.body());
       while (last < contacts_.size() && mechanism(contacts_[last].at.body()) == of_first) ++last;

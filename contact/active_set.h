@@ -16,12 +16,12 @@
 #include <carom/contact/delassus.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/force_margins.h>
+#include <carom/contact/island_partition.h>
 #include <carom/contact/least_forces.h>
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/export.h>
 #include <carom/core/numerics/full_pivoting.h>
-#include <carom/core/numerics/union_find.h>
 
 #include <span>
 #include <vector>
@@ -30,8 +30,9 @@ namespace carom {
 
 /// Memory that active sets share: one at a time uses it.
 struct CAROM_API ActiveSetMemory {
-  UnionFind islands;              ///< of mechanisms, named by their first bodies
-  std::vector<std::size_t> last;  ///< by island: the last of its contacts
+  IslandPartition islands;          ///< of mechanisms, named by their first bodies
+  std::vector<JoinedNodes> joined;  ///< by contact: the mechanisms that it joins
+  std::vector<Index> last;          ///< by contact: the last one of its island
   // Of the group at hand:
   std::vector<ContactPivot::Row> rows;
   std::vector<ImpulseDirection> directions;  ///< of the same

@@ -14,16 +14,20 @@ namespace {
 /// hundred times the energy with impulses of a few hundred times those.
 constexpr double without_measure = 1e4;
 
-/// Whether impulses are far larger than those that change velocities where no other contact acts.
-bool is_without_measure(const ContactProblem& problem, std::span<const double> impulse) {
+/// Whether impulses are far larger than those that change velocities where no other contact acts, and than
+/// those of another answer, if there is one.
+bool is_without_measure(const ContactProblem& problem, std::span<const double> impulse,
+                        std::span<const double> other = {}) {
   if (problem.groups().size() < 2) return false;
   double usual = 0.0, largest = 0.0;
+  for (const double value : impulse) largest = std::max(largest, std::abs(value));
+  for (const double value : other) usual = std::max(usual, std::abs(value));
   for (const RowGroup& group : problem.groups()) {
     const double trace = group_trace(problem, group);
+    if (!(trace > 0.0)) continue;
     const auto first = static_cast<std::size_t>(group.first);
     for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
-      largest = std::max(largest, std::abs(impulse[row]));
-      if (trace > 0.0) usual = std::max(usual, std::abs(problem.vector()[row]) / trace);
+      usual = std::max(usual, std::abs(problem.vector()[row]) / trace);
     }
   }
   return largest > without_measure * usual;
@@ -62,7 +66,8 @@ void PlasticJam::remove(const AnsweredProblem& at, SolverChain& chain) {
   std::fill(at.answer.impulse.begin(), at.answer.impulse.end(), 0.0);
   at.answer.known = false;
   chain.solve(at.problem, at.answer);
-  found_ = !had_answer || (at.answer.report.usable() && were_without_measure(at));
+  found_ = !had_answer ||
+           (at.answer.report.usable() && is_without_measure(at.problem, answer_.impulse, at.answer.impulse));
   if (!found_) restore(at);
 }
 
@@ -121,22 +126,6 @@ void PlasticJam::restore(const AnsweredProblem& at) const {
   std::copy(restitution_.begin(), restitution_.end(), at.restitution.begin());
   std::copy(given_.begin(), given_.end(), at.given.begin());
   at.answer = answer_;
-}
-
-// Against those of the answer without restitution too.
-bool PlasticJam::were_without_measure(const AnsweredProblem& at) const {
-  double usual = 0.0, kept = 0.0;
-  for (const RowGroup& group : at.problem.groups()) {
-    const double trace = group_trace(at.problem, group);
-    const auto first = static_cast<std::size_t>(group.first);
-    for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
-      kept = std::max(kept, std::abs(answer_.impulse[row]));
-      usual = std::max(usual, std::abs(at.answer.impulse[row]));
-      if (!(trace > 0.0)) continue;
-      usual = std::max({usual, std::abs(b_[row]) / trace, std::abs(at.problem.vector()[row]) / trace});
-    }
-  }
-  return kept > without_measure * usual;
 }
 
 }  // namespace carom

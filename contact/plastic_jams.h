@@ -46,7 +46,6 @@ private:
   void give_way(const AnsweredProblem& at, SolverChain& chain);
   void keep(const AnsweredProblem& at);
   void restore(const AnsweredProblem& at) const;
-  [[nodiscard]] bool were_without_measure(const AnsweredProblem& at) const;
 
   bool found_ = false;
   std::vector<double> b_, restitution_, given_, xi_;  // of the problem with restitution

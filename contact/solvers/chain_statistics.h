@@ -18,14 +18,14 @@ enum class SolverId : std::uint8_t {
   single_contact,
   principal_pivoting,
   lemke,
-  projection,
+  disc_sweeps,  ///< of problems with discs only
   enumeration,
   nonlinear_cg  ///< of problems in factors only, and the only one of these
 };
 
 /// All of them, in that order.
 inline constexpr std::array all_solvers{SolverId::single_contact, SolverId::principal_pivoting,
-                                        SolverId::lemke,          SolverId::projection,
+                                        SolverId::lemke,          SolverId::disc_sweeps,
                                         SolverId::enumeration,    SolverId::nonlinear_cg};
 
 /// Number of solvers in SolverId.
@@ -33,7 +33,7 @@ inline constexpr std::size_t solver_count = all_solvers.size();
 
 /// Their names, in that order.
 inline constexpr std::array<std::string_view, solver_count> solver_names{
-    "single contact", "principal pivoting", "Lemke", "projection", "enumeration", "nonlinear CG"};
+    "single contact", "principal pivoting", "Lemke", "disc sweeps", "enumeration", "nonlinear CG"};
 
 /// Name of a solver.
 [[nodiscard]] CAROM_API std::string_view to_string(SolverId solver);

@@ -28,6 +28,11 @@ bool finite(const ContactProblem& problem) {
   return std::ranges::all_of(problem.matrix(), good) && std::ranges::all_of(problem.vector(), good);
 }
 
+bool has_discs(const ContactProblem& problem) {
+  return std::ranges::any_of(problem.sets(),
+                             [](const RowSet& set) { return set.kind == SetKind::bounded_disc; });
+}
+
 }  // namespace
 
 /// Null of what is none of the solvers of an answer.
@@ -39,8 +44,8 @@ ContactSolver* ExactSolvers::solver(SolverId id) {
       return &pivoting_;
     case SolverId::lemke:
       return &lemke_;
-    case SolverId::projection:
-      return &projection_;
+    case SolverId::disc_sweeps:
+      return &disc_sweeps_;
     case SolverId::nonlinear_cg:
     case SolverId::enumeration:
       break;
@@ -58,7 +63,8 @@ void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> m
   const bool suffices = state.report.residual <= tolerated_residual;
   const bool done = (!knows_all && leave_open(problem, state)) || (!alone && fold(problem, state)) ||
                     attempt(problem, first, state) || suffices || attempt(problem, SolverId::lemke, state) ||
-                    attempt(problem, SolverId::projection, state) || approach(problem, state);
+                    (has_discs(problem) && attempt(problem, SolverId::disc_sweeps, state)) ||
+                    approach(problem, state);
   if (!done && !(state.report.residual <= tolerated_residual)) {
     attempt(problem, SolverId::enumeration, state);
   }
@@ -124,25 +130,27 @@ bool ExactSolvers::attempt(const ContactProblem& problem, SolverId id, ExactAtte
   return report.residual <= accepted_residual;
 }
 
-// From an answer that is nearly one, by problems W + s D, b - s D P with D the traces of the groups: each is
+// By problems W + s D, b - s D P with D the traces of the groups, s smaller from one to the next: each is
 // regular, so that pivoting does not lose its digits in rows that almost follow from each other (bodies that
 // lie along each other), and an answer near P is one of the problem but for s times how far it is from P
-// (the proximal point method: R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877). Impulses without end
-// are no answer: s stays so large that the residual tells. Nor are impulses that creep, as those of a body on
-// a light one do that is too heavy for the digits there are: changes have to shrink.
+// (the proximal point method: R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877). P is an answer that
+// is nearly one, with a small s, or else nothing, with s from 1 on: the first of these problems are of
+// contacts that give way, whose modes Newton's method often finishes. Impulses without end are no answer:
+// they leave a residual of about s. Nor are impulses that creep, as those of a body on a light one do that is
+// too heavy for the digits there are: changes have to shrink.
 bool ExactSolvers::approach(const ContactProblem& problem, ExactAttempt& state) {
-  constexpr double near = 1e-3, softest = 1e-5, hardest = 1e-8, harder = 0.5, shrinking = 0.5;
-  constexpr int most_problems = 30, most_failures = 2;
-  if (!(state.report.residual <= near) || state.report.residual <= tolerated_residual) return false;
-  const auto follows = [](const RowSet& set) {  // there may be no answer
-    return set.kind == SetKind::proportional && set.coefficient != 0.0;
-  };
-  if (std::ranges::any_of(problem.sets(), follows)) return false;
+  constexpr double near = 1e-6, softest = 1e-5, hardest = 1e-11, harder = 0.25;
+  constexpr double shrinking = 0.5, without_end = 1e-2;
+  constexpr int most_hardest = 3, most_failures = 2;
+  if (state.report.residual <= state.aim || has_discs(problem)) return false;
+  const bool is_near = state.report.residual <= near;
   anchor_.assign(state.impulse.begin(), state.impulse.end());
-  double softness = softest, last = 0.0;
-  int failures = 0;  // in a row
-  for (int i = 0; i < most_problems; ++i, softness = std::max(harder * softness, hardest)) {
-    if (!solve_near(problem, softness)) {
+  if (!is_near) std::fill(anchor_.begin(), anchor_.end(), 0.0);
+  double last = 0.0;
+  int failures = 0, hard = 0;  // in a row; problems of the least s
+  for (double s = is_near ? softest : 1.0; hard < most_hardest; s = std::max(harder * s, hardest)) {
+    if (s == hardest) ++hard;
+    if (!solve_near(problem, s)) {
       if (++failures == most_failures) return false;
       continue;
     }
@@ -151,15 +159,13 @@ bool ExactSolvers::approach(const ContactProblem& problem, ExactAttempt& state) 
     for (std::size_t row = 0; row < trial_.size(); ++row)
       change = std::max(change, std::abs(trial_[row] - anchor_[row]));
     anchor_ = trial_;
-    if (!(change <= shrinking * std::exchange(last, change))) continue;
+    const bool shrinks = change <= shrinking * std::exchange(last, change);
+    if (!shrinks && s < softest) continue;
+    const Residual found = polish_.improve(problem, trial_, rescue_steps);
+    if (found.value > (shrinks ? without_end * s : accepted_residual)) continue;
     problem.velocities(trial_, trial_xi_);
-    Residual found = residual(problem, trial_, trial_xi_);
-    if (found.value > accepted_residual && found.value <= tolerated_residual) {
-      found = polish_.improve(problem, trial_, polish_steps);
-      problem.velocities(trial_, trial_xi_);
-    }
     keep(found, SolverId::lemke, Outcome::solved, at_mode_boundary(problem, trial_, trial_xi_), state);
-    if (state.report.residual <= accepted_residual) return true;
+    if (state.report.residual <= state.aim) return true;
   }
   return false;
 }

@@ -7,10 +7,10 @@
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/contact_report.h>
 #include <carom/contact/solvers/contact_solver.h>
+#include <carom/contact/solvers/disc_sweeps_solver.h>
 #include <carom/contact/solvers/mirror_fold.h>
 #include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/pivoting_solvers.h>
-#include <carom/contact/solvers/projection_solver.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/contact/solvers/single_contact.h>
 #include <carom/contact/solvers/solution_list.h>
@@ -30,14 +30,16 @@ struct ExactAttempt {
   SolverId last = SolverId::single_contact;  ///< asked last
   bool proved_unsolvable = false;            ///< by the last one
   int applicable = 0;                        ///< solvers that could be tried
+  double aim = accepted_residual;            ///< from above which on problems nearby are asked, too
 };
 
-/// One contact exactly by its modes, several by principal pivoting, then Lemke, then projection; where that
-/// ends near an answer by problems nearby that are regular; up to three by enumeration of the modes when all
-/// else failed. An answer of sweeps that is good enough is only shown to principal pivoting. Contacts that
-/// all separate, and one with rolling resistance, get no impulses: where friction is strong the solvers might
-/// find another solution. A problem that is its own image in a mirror gets an answer that is so too
-/// (mirror_fold.h), where there is one. Reuse it: its memory is kept.
+/// One contact exactly by its modes, several by principal pivoting, then Lemke; where these leave more than
+/// the aim by problems nearby that are regular; up to three by enumeration of the modes when all
+/// else failed. Discs are for sweeps alone (disc_sweeps_solver.h). An answer of sweeps over factors that is
+/// good enough is only shown to principal pivoting. Contacts that all separate, and one with rolling
+/// resistance, get no impulses: where friction is strong the solvers might find another solution. A problem
+/// that is its own image in a mirror gets an answer that is so too (mirror_fold.h), where there is one. Reuse
+/// it: its memory is kept.
 class ExactSolvers {
 public:
   /// Tries solvers until an answer is accepted, and concludes.
@@ -46,8 +48,8 @@ public:
   bool attempt(const ContactProblem& problem, SolverId id, ExactAttempt& state);
   /// Judges what was found, and reads the modes off it.
   static void conclude(const ContactProblem& problem, std::span<ContactMode> modes, ExactAttempt& state);
-  /// Has every sweep of the projection looked at from now on.
-  void set_watch(SweepWatch watch) { projection_.set_watch(std::move(watch)); }
+  /// Has every sweep over problems with discs looked at from now on.
+  void set_watch(SweepWatch watch) { disc_sweeps_.set_watch(std::move(watch)); }
 
 private:
   [[nodiscard]] ContactSolver* solver(SolverId id);
@@ -61,7 +63,7 @@ private:
   SingleContactSolver single_;
   PrincipalPivotingSolver pivoting_;
   LemkeSolver lemke_;
-  ProjectionSolver projection_;
+  DiscSweepsSolver disc_sweeps_;
   SolutionList list_;
   NewtonPolish polish_;
   std::vector<double> trial_, trial_xi_;

@@ -14,6 +14,9 @@ namespace {
 // Below this pivot ratio a direction of the Newton system is left alone: impulses that are not unique.
 constexpr double rank_tolerance = 1e-12;
 
+// Steps in a row that do not halve the residual, after which modes change without an end.
+constexpr int most_idle_steps = 6;
+
 double group_rho(const ContactProblem& problem, const RowGroup& group) {
   const double trace = group_trace(problem, group);
   return trace > 0.0 ? 1.0 / trace : 0.0;
@@ -151,7 +154,9 @@ Residual NewtonPolish::improve(const ContactProblem& problem, std::span<double> 
   step_.resize(n);
   jacobian_.resize(n * n);
   Residual best = judge(problem, trial_);
-  for (int k = 0; k < most_steps && best.value > round_off && std::isfinite(best.value); ++k) {
+  int idle = 0;
+  const auto goes_on = [&] { return best.value > round_off && std::isfinite(best.value); };
+  for (int k = 0; k < most_steps && idle < most_idle_steps && goes_on(); ++k) {
     linearise(problem);
     qr_.factor(jacobian_, n, n, rank_tolerance);
     qr_.solve(map_, step_);
@@ -159,6 +164,7 @@ Residual NewtonPolish::improve(const ContactProblem& problem, std::span<double> 
     restore_sets(problem);
     const Residual now = judge(problem, trial_);
     if (!std::isfinite(now.value)) break;
+    idle = now.value < 0.5 * best.value ? 0 : idle + 1;
     if (now.value < best.value) {
       best = now;
       best_ = trial_;

@@ -22,7 +22,8 @@ public:
   /// A residual at rounding: further steps only move noise.
   static constexpr double round_off = 1e-16;
 
-  /// Improves `impulse` [N s] by at most `most_steps` steps; keeps the best point met, never a worse one.
+  /// Improves `impulse` [N s] by at most `most_steps` steps, fewer where several in a row do not halve the
+  /// residual; keeps the best point met, never a worse one.
   /// Returns its residual. `problem` is grouped, `impulse` has size rows().
   Residual improve(const ContactProblem& problem, std::span<double> impulse, int most_steps);
 

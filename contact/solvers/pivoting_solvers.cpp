@@ -14,14 +14,6 @@ bool without_friction(const ContactProblem& problem) {
   });
 }
 
-// Where friction follows from the normal impulse, as of a contact that slips in a known direction, the matrix
-// need not be copositive, and there may be no solution.
-bool slides(const ContactProblem& problem) {
-  return std::any_of(problem.sets().begin(), problem.sets().end(), [](const RowSet& set) {
-    return set.kind == SetKind::proportional && set.coefficient != 0.0;
-  });
-}
-
 }  // namespace
 
 SolverAnswer PrincipalPivotingSolver::solve(const ContactProblem& problem, std::span<double> impulse) {
@@ -36,8 +28,7 @@ SolverAnswer PrincipalPivotingSolver::solve(const ContactProblem& problem, std::
 SolverAnswer LemkeSolver::solve(const ContactProblem& problem, std::span<double> impulse) {
   if (!form_.build(problem, lcp_)) return {Outcome::not_solved, false, 0, "not applicable"};
   z_.resize(lcp_.q.size());
-  const LemkeRay ray = slides(problem) ? LemkeRay::confirmed : LemkeRay::repeated;
-  const LcpAnswer answer = method_.solve(lcp_, z_, 0, ray);
+  const LcpAnswer answer = method_.solve(lcp_, z_);
   form_.impulses(problem, z_, impulse);
   if (answer.status == LcpStatus::solved) return {Outcome::solved, false, answer.pivots, {}};
   const bool proved = answer.status == LcpStatus::secondary_ray && without_friction(problem);

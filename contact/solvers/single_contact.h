@@ -1,8 +1,7 @@
 #pragma once
 
 /// \file
-/// One contact, solved exactly: all its modes in closed form. The hot path of impacts, and the local step of
-/// the projection solver.
+/// One contact, solved exactly: all its modes in closed form. The hot path of impacts.
 
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/contact_solver.h>

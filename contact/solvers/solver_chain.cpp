@@ -120,7 +120,8 @@ void SolverChain::Workspace::sweep(const ContactProblem& problem, std::span<doub
 bool SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::span<double> impulse,
                                             ContactReport& report) {
   sweep(problem, impulse, report);
-  ExactAttempt attempt{impulse, xi, report, SolverId::nonlinear_cg, SolverId::nonlinear_cg, false, 1};
+  ExactAttempt attempt{
+      impulse, xi, report, SolverId::nonlinear_cg, SolverId::nonlinear_cg, false, 1, tolerated_residual};
   const bool is_left = !(report.residual <= accepted_residual) && large.has_dense(problem, report);
   if (is_left) {
     exact.solve(large.dense(), modes, attempt);
@@ -167,7 +168,10 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
     return;
   }
   if (!work.begin(problem, impulse, report)) return;
-  ExactAttempt attempt{.impulse = impulse, .xi = work.xi, .report = report};
+  ExactAttempt attempt{.impulse = impulse,
+                       .xi = work.xi,
+                       .report = report,
+                       .aim = work.capped ? tolerated_residual : accepted_residual};
   work.exact.solve(problem, work.modes, attempt);
   if (work.capped && !report.usable() && work.is_nearly_solved(problem, impulse, report)) {
     work.take_at_cap(attempt, report);

@@ -31,15 +31,15 @@ struct ContactSolution {
   bool changed_modes = false;  ///< the answer has other modes than what it started from
 };
 
-/// Solves contact problems: one contact exactly by its modes, then Lemke, then projection; several contacts
-/// by principal pivoting (Johansson 1999), then Lemke, then projection, and up to three by enumeration of
-/// the modes when all else failed. Of several solutions of one contact the one with the smallest normal
-/// impulse; of several contacts that without impulses where it is one, else it does not look for others
-/// (SolutionList does). A problem in factors is left to sweeps (nonlinear_cg_solver.h): `solved` up to the
-/// residual of the budget; where they do not reach it a small one is left to the exact solvers
-/// (large_problem_solver.h), and a large one is accepted_at_cap or not_solved, with the modes of its answer.
-/// Deterministic; keeps nothing between calls but statistics and memory. Allocates only while problems grow.
-/// Not for use by two threads at once.
+/// Solves contact problems: one contact exactly by its modes, several by principal pivoting (Johansson 1999),
+/// then Lemke, then by regular problems nearby, and up to three by enumeration of the modes when all else
+/// failed; problems with discs by sweeps over these (exact_solvers.h). Of several solutions of one contact
+/// the one with the smallest normal impulse; of several contacts that without impulses where it is one, else
+/// it does not look for others (SolutionList does). A problem in factors is left to sweeps
+/// (nonlinear_cg_solver.h): `solved` up to the residual of the budget; where they do not reach it a small one
+/// is left to the exact solvers (large_problem_solver.h), and a large one is accepted_at_cap or not_solved,
+/// with the modes of its answer. Deterministic; keeps nothing between calls but statistics and memory.
+/// Allocates only while problems grow. Not for use by two threads at once.
 class CAROM_API SolverChain {
 public:
   SolverChain();
@@ -71,7 +71,7 @@ public:
   /// and 0 <= accepted.
   void set_budget(const SweepBudget& budget);
 
-  /// Has every sweep of `projection` and `nonlinear_cg` looked at from now on; empty: no more.
+  /// Has every sweep of `disc_sweeps` and `nonlinear_cg` looked at from now on; empty: no more.
   void set_watch(const SweepWatch& watch);
 
   /// xi = W P + b of the last answer; gamma^+ = xi - E gamma^-. Valid until the next solve.

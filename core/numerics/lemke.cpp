@@ -12,12 +12,6 @@ namespace {
 
 constexpr std::size_t no_row = std::numeric_limits<std::size_t>::max();
 
-// Least number of pivots between two rebuilds of the tableau in the careful pass.
-constexpr int rebuild_interval = 4;
-
-// A column may miss its equations by this part of their largest terms before the tableau is made anew.
-constexpr double tableau_accuracy = 1e-14;
-
 // Pivots below this part of the largest one make a basis singular when it is solved anew.
 constexpr double basis_rank_tolerance = 1e-14;
 
@@ -157,10 +151,9 @@ void Lemke::write_column(std::size_t variable, std::size_t stride, double* out) 
   }
 }
 
-// Recomputes values and columns [first, last) of the tableau of the present basis from the problem's data:
-// solves B [value, tableau] = [q, N] with columns of the system. False, without a change, of a singular
-// basis.
-bool Lemke::rebuild_tableau(std::size_t first, std::size_t last) {
+// Recomputes the values and one column of the tableau of the present basis from the problem's data: solves B
+// [value, column] = [q, N] with columns of the system. False, without a change, of a singular basis.
+bool Lemke::renew(std::size_t column) {
   system_.resize(n_ * n_);
   rhs_.resize(n_);
   unknown_.resize(n_);
@@ -168,73 +161,33 @@ bool Lemke::rebuild_tableau(std::size_t first, std::size_t last) {
   qr_.factor(system_, n_, n_, basis_rank_tolerance);
   if (qr_.rank() < n_) return false;
   qr_.solve(scaled_.q, value_);
-  for (std::size_t j = first; j < last; ++j) {
-    write_column(nonbasic_[j], 1, rhs_.data());
-    qr_.solve(rhs_, unknown_);
-    for (std::size_t i = 0; i < n_; ++i) entry(i, j) = -unknown_[i];
-  }
+  write_column(nonbasic_[column], 1, rhs_.data());
+  qr_.solve(rhs_, unknown_);
+  for (std::size_t i = 0; i < n_; ++i) entry(i, column) = -unknown_[i];
   return true;
 }
 
-// Whether basic variables, by row of the tableau, solve the system with right hand sides a, to rounding.
-bool Lemke::solves_system(std::span<const double> basic, std::span<const double> a) {
-  unknown_.assign(n_, 0.0);
-  double z0 = 0.0, worst = 0.0, largest = 0.0;
-  for (std::size_t row = 0; row < n_; ++row) {
-    if (basic_[row] == 2 * n_) z0 = basic[row];
-    if (basic_[row] >= n_ && basic_[row] < 2 * n_) unknown_[basic_[row] - n_] = basic[row];
-  }
-  for (std::size_t i = 0; i < n_; ++i) {
-    const double w = place_[i] < n_ ? basic[place_[i]] : 0.0, covering = scaled_.row_scale[i] * z0;
-    double sum = w - covering - a[i], terms = std::abs(w) + std::abs(covering) + std::abs(a[i]);
-    for (std::size_t j = 0; j < n_; ++j) {
-      const double term = scaled_.m[i * n_ + j] * unknown_[j];
-      sum -= term;
-      terms += std::abs(term);
-    }
-    worst = std::max(worst, std::abs(sum));
-    largest = std::max(largest, terms);
-  }
-  return worst <= tableau_accuracy * largest;
-}
-
-// Whether all that decides on the next pivot still is what the problem's data make it.
-bool Lemke::is_accurate(std::size_t column) {
-  if (!solves_system(value_, scaled_.q)) return false;
-  rhs_.resize(n_);
-  write_column(nonbasic_[column], 1, rhs_.data());
-  for (double& value : rhs_) value = -value;
-  entering_.resize(n_);
-  for (std::size_t i = 0; i < n_; ++i) entering_[i] = entry(i, column);
-  return solves_system(entering_, rhs_);
-}
-
-// Whether the ray at which a pass ended is one of the problem, to the last digits: all basic variables are
-// there, and none falls along it.
-bool Lemke::confirms_ray() {
-  if (!rebuild_tableau(ray_, ray_ + 1) || blocking_row(ray_) != no_row) return false;
+// Whether the ray along a column at which the path ended is one of the problem, to the last digits: all basic
+// variables are there, and none falls along it.
+bool Lemke::confirms_ray(std::size_t column) {
+  if (!renew(column) || blocking_row(column) != no_row) return false;
   const double rounding = lemke_pivot_threshold * std::max(1.0, largest_magnitude(value_));
   return std::all_of(value_.begin(), value_.end(), [&](double value) { return value >= -rounding; });
 }
 
-LcpStatus Lemke::run(bool rebuild, int most_pivots, int& pivots) {
+LcpStatus Lemke::follow_path(int most_pivots, int& pivots) {
   start();
   std::size_t row = first_row();
   if (row == no_row) return LcpStatus::solved;
   std::size_t column = n_;
-  int next_rebuild = rebuild_interval;
-  for (int count = 1;; ++count) {
+  for (;;) {
     const std::size_t leaving = basic_[row];
     pivot(row, column);
     ++pivots;
     if (leaving == 2 * n_) return LcpStatus::solved;
-    if (count >= most_pivots) return LcpStatus::pivot_bound;
+    if (pivots >= most_pivots) return LcpStatus::pivot_bound;
     // The complement of what left enters.
     column = place_[leaving < n_ ? leaving + n_ : leaving - n_] - n_;
-    if (rebuild && count >= next_rebuild && !is_accurate(column)) {
-      rebuild_tableau(0, n_ + 1);
-      next_rebuild = count + rebuild_interval;
-    }
     row = blocking_row(column);
     if (row != no_row) continue;
     ray_ = column;
@@ -266,34 +219,19 @@ void Lemke::read_solution(const Lcp& problem, std::span<double> z) {
   for (std::size_t i = 0; i < k; ++i) z[support_[i]] = std::max(unknown_[i], 0.0);
 }
 
-LcpAnswer Lemke::solve(const Lcp& problem, std::span<double> z, int most_pivots, LemkeRay ray) {
+LcpAnswer Lemke::solve(const Lcp& problem, std::span<double> z, int most_pivots) {
   if (most_pivots == 0) most_pivots = 100 + 30 * problem.size;
   scale(problem);
   LcpAnswer answer;
-  const LcpStatus first = run(false, most_pivots, answer.pivots);
+  answer.status = follow_path(most_pivots, answer.pivots);
   read_solution(problem, z);
-  double error = lcp_residual(problem, z);
-  LcpStatus status = first;
-  // Answers that are accepted are not repeated: most often that ends in the same basis, at many times the
-  // cost. Nor is a path to a ray that is one.
-  const bool ends = first == LcpStatus::secondary_ray && ray == LemkeRay::confirmed && error > lcp_accuracy &&
-                    confirms_ray();
-  if (error > lcp_accuracy && first != LcpStatus::pivot_bound && !ends) {
-    // The tableau has lost digits, or has pivoted on rounding: once more, with a tableau that has not.
-    best_.assign(z.begin(), z.end());
-    status = run(true, most_pivots, answer.pivots);
-    read_solution(problem, z);
-    const double careful = lcp_residual(problem, z);
-    if (careful < error) {
-      error = careful;
-    } else {
-      std::copy(best_.begin(), best_.end(), z.begin());
-      if (first == LcpStatus::solved) status = first;
-    }
-  }
   // A path can also end where z0 is zero but for rounding: then it stands at a solution.
-  const bool good = error <= lcp_accuracy;
-  answer.status = good ? LcpStatus::solved : (status == LcpStatus::solved ? LcpStatus::inaccurate : status);
+  if (lcp_residual(problem, z) <= lcp_accuracy) {
+    answer.status = LcpStatus::solved;
+  } else if (answer.status == LcpStatus::solved ||
+             (answer.status == LcpStatus::secondary_ray && !confirms_ray(ray_))) {
+    answer.status = LcpStatus::inaccurate;
+  }
   return answer;
 }
 

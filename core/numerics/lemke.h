@@ -22,38 +22,30 @@ inline constexpr double lemke_pivot_threshold = 1e-10;
 /// lexicographic rule decides among them.
 inline constexpr double lemke_tie_threshold = 1e-12;
 
-/// Next step of a path that ends at a ray.
-enum class LemkeRay : std::uint8_t {
-  repeated,  ///< the second pass: the problem has a solution by theory, so that digits must have been lost
-  confirmed  ///< likewise, unless the ray is one in a tableau made anew: the problem need not have a solution
-};
-
 /// Complementary pivoting after Lemke with the lexicographic rule (Cottle, Pang, Stone, The Linear
 /// Complementarity Problem, 1992, algorithms 4.4.1 and 4.4.9; covering vector of ones), on the problem with
 /// rows and columns scaled by powers of two.
 ///
 /// The solution is not read from the tableau but solved anew from the final basis and refined, so that it is
-/// as good as the basis. When the tableau's basis turns out wrong, a second pass rebuilds the tableau from
-/// the problem's data where it no longer fits them. Finite for exact arithmetic, though some problems take
-/// 2^n pivots; contact problems take about n. Keeps its memory between calls.
+/// as good as the basis; so is the ray at which a path ends. Where the tableau has lost its digits, or has
+/// pivoted on rounding, the answer is inaccurate, and another problem nearby loses fewer (exact_solvers.h).
+/// Finite for exact arithmetic, though some problems take 2^n pivots; contact problems take about n. Keeps
+/// its memory between calls.
 class CAROM_API Lemke {
 public:
-  /// Writes z (size n). Statuses: solved (lcp_residual below lcp_accuracy), secondary_ray, pivot_bound,
-  /// inaccurate; z is the last point reached where it is not solved. A pass ends after `most_pivots`
-  /// pivots (0: 100 + 30 n).
-  [[nodiscard]] LcpAnswer solve(const Lcp& problem, std::span<double> z, int most_pivots = 0,
-                                LemkeRay ray = LemkeRay::repeated);
+  /// Writes z (size n). Statuses: solved (lcp_residual below lcp_accuracy), secondary_ray (one of the problem
+  /// to the last digits), pivot_bound, inaccurate; z is the last point reached where it is not solved. The
+  /// path ends after `most_pivots` pivots (0: 100 + 30 n).
+  [[nodiscard]] LcpAnswer solve(const Lcp& problem, std::span<double> z, int most_pivots = 0);
 
 private:
-  LcpStatus run(bool rebuild, int most_pivots, int& pivots);
+  LcpStatus follow_path(int most_pivots, int& pivots);
   void start();
   void scale(const Lcp& problem);
   void pivot(std::size_t row, std::size_t column);
   void write_column(std::size_t variable, std::size_t stride, double* out) const;
-  bool rebuild_tableau(std::size_t first, std::size_t last);
-  [[nodiscard]] bool solves_system(std::span<const double> basic, std::span<const double> a);
-  [[nodiscard]] bool is_accurate(std::size_t column);
-  [[nodiscard]] bool confirms_ray();
+  bool renew(std::size_t column);
+  [[nodiscard]] bool confirms_ray(std::size_t column);
   [[nodiscard]] std::size_t first_row() const;
   [[nodiscard]] std::size_t blocking_row(std::size_t column) const;
   [[nodiscard]] bool lexicographically_less(std::size_t row, std::size_t other, std::size_t column) const;
@@ -76,12 +68,12 @@ private:
     std::vector<double> row_scale, column_scale;
   };
 
-  std::size_t n_ = 0, ray_ = 0;  // size; column in which the last pass ended at a ray
+  std::size_t n_ = 0, ray_ = 0;  // size; column in which the last path ended at a ray
   Scaled scaled_;
   std::vector<double> tableau_, value_;
   std::vector<std::size_t> basic_, nonbasic_;  // variable in each row, in each column
   std::vector<std::size_t> place_;             // row of a basic variable, n + column of a nonbasic one
-  std::vector<double> system_, rhs_, unknown_, entering_, best_;
+  std::vector<double> system_, rhs_, unknown_;
   std::vector<std::size_t> support_;
   RankRevealingQr qr_;
 };

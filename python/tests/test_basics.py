@@ -174,13 +174,15 @@ def test_contact_problem_is_solved():
 
 
 def test_residuals_of_a_solver_by_sweep(tmp_path):
-    friction = carom.RowSet(kind="bounded_interval", bound=0, coefficient=0.3)
-    problem = carom.ContactProblem([[2.0, -0.5], [-0.5, 3.0]], [-1.0, 0.5], [carom.RowSet(), friction])
-    history = carom.residual_history(problem, "projection")
-    assert history.solver == "projection" and history.outcome == carom.Outcome.solved
+    friction = carom.RowSet(kind="bounded_disc", bound=0, coefficient=0.3)
+    w = [[2.0, -0.5, 0.0], [-0.5, 3.0, 0.0], [0.0, 0.0, 3.0]]
+    problem = carom.ContactProblem(w, [-1.0, 0.5, 0.2], [carom.RowSet(), friction, friction])
+    history = carom.residual_history(problem, "disc_sweeps")
+    assert history.solver == "disc sweeps" and history.outcome == carom.Outcome.solved
     assert [point.iterations for point in history.sweeps] == list(range(1, len(history.sweeps) + 1))
     assert history.answer.residual < 1e-15 and history.answer.seconds >= 0.0
-    carom.write_histories(tmp_path / "history.csv", [history, carom.residual_history(problem, "lemke")])
+    of_plane = carom.ContactProblem([[2.0]], [-1.0], [carom.RowSet()])
+    carom.write_histories(tmp_path / "history.csv", [history, carom.residual_history(of_plane, "lemke")])
     lines = (tmp_path / "history.csv").read_text().splitlines()
     assert lines[0] == "solver,kind,outcome,iterations,seconds,residual"
     assert len(lines) == len(history.sweeps) + 3

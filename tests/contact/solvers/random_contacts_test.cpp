@@ -67,13 +67,11 @@ void solve_many(const carom_test::SeedRange& seeds, double decades) {
   const ChainStatistics& s = chain.statistics();
   std::printf(
       "[   data   ] %d problems over %.0f decades of mass: principal pivoting %lld of %lld tried, Lemke %lld "
-      "of "
-      "%lld, projection %lld of %lld, enumeration %lld; above 1e-12: %lld; worst residual %.1e; failures "
+      "of %lld, enumeration %lld; above 1e-12: %lld; worst residual %.1e; failures "
       "%lld; "
       "energy gain at most %.1e of its terms\n",
       seeds.count(), decades, static_cast<long long>(s.accepted[1]), static_cast<long long>(s.tried[1]),
       static_cast<long long>(s.accepted[2]), static_cast<long long>(s.tried[2]),
-      static_cast<long long>(s.accepted[3]), static_cast<long long>(s.tried[3]),
       static_cast<long long>(s.accepted[4]), static_cast<long long>(s.tolerated), s.worst_residual,
       static_cast<long long>(counts.failures), counts.worst_gain);
   EXPECT_EQ(counts.failures, 0);

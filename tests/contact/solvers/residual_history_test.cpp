@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -65,9 +67,22 @@ TEST(ResidualHistory, IsThatOfTheAnswer) {
   EXPECT_EQ(history.sweeps.size(), static_cast<std::size_t>(history.answer.iterations));
 }
 
-TEST(ResidualHistory, OfProjectionFallsToRounding) {
-  const ContactProblem problem = contact_test::random_problem(7, 8).problem;
-  const ResidualHistory history = residual_history(problem, SolverId::projection);
+// Contacts in space, each of which meets the next one.
+TEST(ResidualHistory, OfDiscSweepsFallsToRounding) {
+  constexpr int contacts = 8, rows = 3 * contacts;
+  ContactProblem problem;
+  problem.reset(rows);
+  for (int i = 0; i < rows; ++i) {
+    problem.vector()[static_cast<std::size_t>(i)] = i % 3 == 0 ? -1.0 : 0.3 * std::sin(i);
+    for (int j = 0; j < rows; ++j) {
+      if (std::abs(i / 3 - j / 3) <= 1) problem.w(i, j) = i == j ? 2.0 : 0.2 / (1.0 + std::abs(i - j));
+    }
+    if (i % 3 == 0) continue;
+    problem.sets()[static_cast<std::size_t>(i)] = {
+        .kind = SetKind::bounded_disc, .bound = i - i % 3, .coefficient = 0.3};
+  }
+  problem.group();
+  const ResidualHistory history = residual_history(problem, SolverId::disc_sweeps);
   expect_history(history, 1);
   EXPECT_EQ(history.outcome, Outcome::solved);
   EXPECT_GT(history.sweeps.front().residual, 1e-3);

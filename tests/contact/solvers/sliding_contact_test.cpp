@@ -259,7 +259,7 @@ TEST(SlidingContact, EnumerationCountsLikeTheClosedForm) {
 // Whatever one solver says of one contact alone is right, and none claims a proof that is none.
 TEST(SlidingContact, EverySolverIsRightOrSaysThatItIsNot) {
   SolverChain chain;
-  int solved[5] = {}, solvable = 0;
+  int solved[solver_count] = {}, solvable = 0;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(seed);
     const SlidingContact c = random_contact(seed);
@@ -281,7 +281,8 @@ TEST(SlidingContact, EverySolverIsRightOrSaysThatItIsNot) {
   }
   // Where p < 0 the open solution is one that all of them start from.
   for (const SolverId solver : all_solvers) {
-    if (solver == SolverId::nonlinear_cg) continue;  // of problems in factors only
+    // Of problems in factors only, of problems with discs only.
+    if (solver == SolverId::nonlinear_cg || solver == SolverId::disc_sweeps) continue;
     EXPECT_EQ(solved[static_cast<std::size_t>(solver)], solvable) << to_string(solver);
   }
 }

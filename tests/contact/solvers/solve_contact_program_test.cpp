@@ -84,8 +84,7 @@ protected:
 
 TEST_F(SolveContactProgram, EverySolverSolvesAProblemOfASolverError) {
   save_gaining();
-  for (const std::string solver :
-       {"chain", "single-contact", "principal-pivoting", "lemke", "projection", "enumeration"}) {
+  for (const std::string solver : {"chain", "single-contact", "principal-pivoting", "lemke", "enumeration"}) {
     const Outcome outcome = run(file() + " --solver " + solver + " --json");
     ASSERT_EQ(outcome.code, 0) << solver << "\n" << outcome.text;
     const auto read = nlohmann::json::parse(outcome.text);
@@ -109,10 +108,9 @@ TEST_F(SolveContactProgram, AllSaysWhoIsRight) {
   save_gaining();
   const Outcome all = run("--solver=all " + file());
   EXPECT_EQ(all.code, 0) << all.text;
-  EXPECT_NE(
-      all.text.find("right (residual up to 1e-10): single contact, principal pivoting, Lemke, projection, "
-                    "enumeration, chain"),
-      std::string::npos)
+  EXPECT_NE(all.text.find("right (residual up to 1e-10): single contact, principal pivoting, Lemke, "
+                          "enumeration, chain"),
+            std::string::npos)
       << all.text;
   EXPECT_NE(all.text.find("smallest residual: "), std::string::npos) << all.text;
   EXPECT_NE(all.text.find("2 rows in 1 groups"), std::string::npos) << all.text;
@@ -164,14 +162,14 @@ TEST_F(SolveContactProgram, AContactThatSlides) {
   int not_applicable = 0;
   for (const auto& one : all) {
     if (one["reason"] == "not applicable") {
-      ++not_applicable;  // sweeps, which are of problems in factors only
+      ++not_applicable;  // sweeps, which are of problems in factors or with discs only
       continue;
     }
     EXPECT_EQ(one["certified"], true) << one;
     EXPECT_EQ(one["modes"][0], "slip+") << one;
     EXPECT_NEAR(one["P"][0].get<double>(), 9.81 / 4.0, 1e-15);
   }
-  EXPECT_EQ(not_applicable, 1);
+  EXPECT_EQ(not_applicable, 2);
 }
 
 TEST_F(SolveContactProgram, BrokenNumbersAreShown) {
@@ -206,12 +204,22 @@ TEST_F(SolveContactProgram, WritesResidualsBySweep) {
   const std::vector<std::string> chain = lines_of("");
   ASSERT_EQ(chain.size(), 2U);
   EXPECT_TRUE(chain[1].starts_with("single contact,answer,solved,")) << chain[1];
-  const std::vector<std::string> projection = lines_of("--solver projection --json");
-  ASSERT_GT(projection.size(), 2U);
-  EXPECT_TRUE(projection[1].starts_with("projection,sweep,,1,")) << projection[1];
-  EXPECT_TRUE(projection.back().starts_with("projection,answer,solved,")) << projection.back();
-  // Five exact solvers have an answer, one of which sweeps.
-  EXPECT_EQ(lines_of("--solver=all").size(), 1 + 4 + (projection.size() - 1));
+  // Four exact solvers of the plane have an answer.
+  EXPECT_EQ(lines_of("--solver=all").size(), 1U + 4U);
+  // A contact in space.
+  ContactProblem problem;
+  problem.reset(3);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) problem.w(i, j) = i == j ? 2.0 : 0.5;
+    problem.vector()[static_cast<std::size_t>(i)] = i == 1 ? 2.0 : -1.0;
+  }
+  problem.sets()[1] = problem.sets()[2] = {.kind = SetKind::bounded_disc, .bound = 0, .coefficient = 0.3};
+  problem.group();
+  problem.save(path_);
+  const std::vector<std::string> sweeps = lines_of("--solver disc-sweeps --json");
+  ASSERT_GT(sweeps.size(), 2U);
+  EXPECT_TRUE(sweeps[1].starts_with("disc sweeps,sweep,,1,")) << sweeps[1];
+  EXPECT_TRUE(sweeps.back().starts_with("disc sweeps,answer,solved,")) << sweeps.back();
   std::filesystem::remove(table);
 }
 

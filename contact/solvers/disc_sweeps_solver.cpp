@@ -1,8 +1,6 @@
-// Problem: any contact problem, discs included, when no direct method applies or has succeeded.
+// Problem: contacts in space, whose friction lies in a disc, which no pivoting method takes.
 
-#include <carom/contact/solvers/projection_solver.h>
-
-#include <carom/contact/solvers/single_contact.h>
+#include <carom/contact/solvers/disc_sweeps_solver.h>
 
 #include <algorithm>
 #include <cmath>
@@ -69,45 +67,15 @@ double clamp_step(double impulse, double w, double xi, double lower, double uppe
 
 }  // namespace
 
-double ProjectionSolver::velocity(const ContactProblem& problem, std::size_t row) const {
+double DiscSweepsSolver::velocity(const ContactProblem& problem, std::size_t row) const {
   const std::size_t n = impulse_.size();
   double sum = problem.vector()[row];
   for (std::size_t j = 0; j < n; ++j) sum += problem.matrix()[row * n + j] * impulse_[j];
   return sum;
 }
 
-void ProjectionSolver::visit_planar(const ContactProblem& problem, std::size_t row) {
-  const int i = static_cast<int>(row);
-  PlanarContact c{problem.w(i, i),
-                  problem.w(i, i + 1),
-                  problem.w(i + 1, i + 1),
-                  0.0,
-                  0.0,
-                  problem.sets()[row + 1].coefficient};
-  c.b_n = velocity(problem, row) - c.w_nn * impulse_[row] - c.w_nt * impulse_[row + 1];
-  c.b_t = velocity(problem, row + 1) - c.w_nt * impulse_[row] - c.w_tt * impulse_[row + 1];
-  const PlanarSolutions found = solve_planar_contact(c);
-  if (found.count == 0) {
-    visit_rows(problem, {i, 2});
-    return;
-  }
-  // Of several solutions the nearest, so that a sweep does not jump to and fro.
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t best = 0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(found.count); ++k) {
-    const double distance =
-        std::hypot(found.list[k].normal - impulse_[row], found.list[k].tangential - impulse_[row + 1]);
-    if (distance < least) {
-      least = distance;
-      best = k;
-    }
-  }
-  impulse_[row] = found.list[best].normal;
-  impulse_[row + 1] = found.list[best].tangential;
-}
-
 // The first row of a group, and with it those that are proportional to it: one unknown.
-void ProjectionSolver::visit_leading(const ContactProblem& problem, const RowGroup& group) {
+void DiscSweepsSolver::visit_leading(const ContactProblem& problem, const RowGroup& group) {
   const auto first = static_cast<std::size_t>(group.first);
   const std::size_t last = first + static_cast<std::size_t>(group.size);
   const auto sets = problem.sets();
@@ -132,7 +100,7 @@ void ProjectionSolver::visit_leading(const ContactProblem& problem, const RowGro
   }
 }
 
-void ProjectionSolver::visit_rows(const ContactProblem& problem, const RowGroup& group) {
+void DiscSweepsSolver::visit(const ContactProblem& problem, const RowGroup& group) {
   const auto first = static_cast<std::size_t>(group.first);
   const std::size_t last = first + static_cast<std::size_t>(group.size);
   const auto rows = problem.sets().subspan(first, last - first);
@@ -161,18 +129,9 @@ void ProjectionSolver::visit_rows(const ContactProblem& problem, const RowGroup&
   }
 }
 
-void ProjectionSolver::visit(const ContactProblem& problem, const RowGroup& group) {
-  const auto first = static_cast<std::size_t>(group.first);
-  const bool planar = group.size == 2 && problem.sets()[first].kind == SetKind::half_line &&
-                      problem.sets()[first + 1].kind == SetKind::bounded_interval;
-  if (planar) {
-    visit_planar(problem, first);
-  } else {
-    visit_rows(problem, group);
-  }
-}
-
-SolverAnswer ProjectionSolver::solve(const ContactProblem& problem, std::span<double> impulse) {
+SolverAnswer DiscSweepsSolver::solve(const ContactProblem& problem, std::span<double> impulse) {
+  const auto is_disc = [](const RowSet& set) { return set.kind == SetKind::bounded_disc; };
+  if (std::ranges::none_of(problem.sets(), is_disc)) return {Outcome::not_solved, false, 0, "not applicable"};
   const auto n = static_cast<std::size_t>(problem.rows());
   impulse_.assign(n, 0.0);
   trial_.resize(n);
@@ -187,10 +146,10 @@ SolverAnswer ProjectionSolver::solve(const ContactProblem& problem, std::span<do
 
   double best = std::numeric_limits<double>::infinity();
   int attempt = first_attempt;
-  for (int sweep = 1; sweep <= projection_sweeps; ++sweep) {
+  for (int sweep = 1; sweep <= most_disc_sweeps; ++sweep) {
     for (const RowGroup& group : problem.groups()) visit(problem, group);
     if (watch_) watch_(sweep, impulse_);
-    if (sweep != attempt && sweep != projection_sweeps) continue;
+    if (sweep != attempt && sweep != most_disc_sweeps) continue;
     attempt *= attempt_growth;
     trial_ = impulse_;
     const Residual reached = polish_.improve(problem, trial_, newton_steps);
@@ -200,7 +159,7 @@ SolverAnswer ProjectionSolver::solve(const ContactProblem& problem, std::span<do
     }
     if (best <= target) return {Outcome::solved, false, sweep, {}};
   }
-  return {Outcome::not_solved, false, projection_sweeps, "sweep bound"};
+  return {Outcome::not_solved, false, most_disc_sweeps, "sweep bound"};
 }
 
 }  // namespace carom
