@@ -18,10 +18,11 @@ struct ClosingBracket {
   bool below;    // a gap below the level was found
   bool rises = false;
 
-  void take(double time, double rest, double rate) {
+  void take(double time, double rest, double rate, bool is_open) {
     rises = rest > 0.0 && rate >= 0.0;
-    below = below || !(rest > 0.0);
-    (rest > 0.0 && !rises ? low : high) = time;
+    const bool as_low = !rises && (rest > 0.0 || is_open);
+    below = below || !(rises || as_low);
+    (as_low ? low : high) = time;
   }
   [[nodiscard]] bool is_narrow() const {
     return high - low <= 2.0 * std::numeric_limits<double>::epsilon() * scale;
@@ -42,6 +43,7 @@ ClosingRoot locate_closing(PairPath& path, const PairGap& of, const ClosingRule&
   using Kind = ClosingRoot::Kind;
   constexpr int most_looks = 60;
   ClosingBracket at{from.time, to, std::max(std::abs(to), to - from.time), is_below};
+  const bool searches_behind = rule.contradiction > 0.0;
   const double first = std::clamp(predicted, at.low, at.high);
   double time = first;
   for (int i = 0; i < most_looks; ++i) {
@@ -52,14 +54,21 @@ ClosingRoot locate_closing(PairPath& path, const PairGap& of, const ClosingRule&
     }
     const double rest = gap.value - rule.level;
     const bool falls = std::min(gap.first, from.gap.first) < -rule.slow;
-    if (std::abs(rest) <= rule.found || at.low == at.high)
-      return {time, falls || at.low == at.high ? Kind::closes : Kind::touches, gap.first};
-    if (rest > 0.0 && gap.first >= 0.0 && time <= first) return {time, Kind::opens, gap.first};
-    at.take(time, rest, gap.first);
+    const bool is_there = std::abs(rest) <= rule.found;
+    if ((is_there && falls) || at.low == at.high) return {time, Kind::closes, gap.first};
+    if (is_there && searches_behind) return {time, Kind::touches, gap.first};
+    // Before the time that was predicted first nothing closes: a gap that rises there opens. At any other
+    // time it may have closed between the last time at which it fell and this one.
+    const bool is_first = searches_behind ? i == 0 : time <= first;
+    if (rest > 0.0 && gap.first >= 0.0 && is_first) return {time, Kind::opens, gap.first};
+    // A gap that does not fall is open: it may close behind that.
+    const bool is_open = !falls && !searches_behind;
+    at.take(time, rest, gap.first, is_open);
     if (at.is_narrow()) break;
     constexpr int some = 8;
-    time = at.next(time, rest / gap.first, i % some == some - 1);
+    time = at.next(time, rest / gap.first, is_open || i % some == some - 1);
   }
+  if (searches_behind && at.rises) return {at.high, Kind::opens, 0.0};
   if (!at.below) return {first, Kind::opens, 0.0};
   return {at.high, Kind::closes, 0.0};
 }

@@ -183,8 +183,8 @@ public:
     if (!may_close(from, to)) return never;
     const double predicted = predict_closing(*path_, *of_, rule_, from, to, looks_);
     if (!(predicted < never)) return never;
-    const bool is_below = to.known && to.gap.value < rule_.level;
-    const ClosingRoot root = locate_closing(*path_, *of_, rule_, from, to.time, is_below, predicted);
+    // It may be between the last time before the end of the span and that end.
+    const ClosingRoot root = locate_closing(*path_, *of_, rule_, from, to.time, true, predicted);
     if (root.kind == Kind::closes) return root.time;
     if (root.kind == Kind::misleads) {
       looks_ = PathLook::exact;

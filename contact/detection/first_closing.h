@@ -81,7 +81,8 @@ struct ClosingRule {
   /// looks are exact then [m].
   double misleading = never;
   /// Values and rates of steps of low order contradict each other by the tolerance: a gap that opens where it
-  /// reaches its level is searched for what is deeper than that, by up to this [m].
+  /// reaches its level is searched for what is deeper than that, by up to this [m]. 0: it counts as open
+  /// there, and what is behind that is searched.
   double contradiction = 0.0;
 };
 
