@@ -215,12 +215,13 @@ def three_solutions(data):
 
 def random_contacts(data):
     run = columns_of(data / "random_contacts.csv")
-    names = ("single contact", "principal pivoting", "Lemke", "projection", "enumeration")
+    names = ("single contact", "principal pivoting", "Lemke", "enumeration")
+    places = {number: place for place, number in enumerate(sorted(set(run["solver"])))}
     figure, axes = plt.subplots(figsize=(7, 3.6), layout="constrained")
     for contacts, color, shift in ((1, BLUE, -0.12), (2, ORANGE, 0.12)):
         shown = [i for i, n in enumerate(run["contacts"]) if n == contacts]
         spread = [0.08 * math.sin(7.0 * k) for k in range(len(shown))]
-        axes.semilogy([run["solver"][i] + shift + s for i, s in zip(shown, spread)],
+        axes.semilogy([places[run["solver"][i]] + shift + s for i, s in zip(shown, spread)],
                       [max(run["certificate"][i], 1e-19) for i in shown], ".", color=color, markersize=4,
                       label="one contact" if contacts == 1 else "two contacts")
     axes.axhline(1e-12, color="0.4", linestyle="--", linewidth=0.9, label="accepted below this value")
