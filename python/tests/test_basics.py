@@ -115,7 +115,7 @@ def test_lock_is_released_while_nothing_in_python_is_called():
 
 
 CTRL_C = """
-import os, signal, sys, threading
+import os, signal, sys, threading, time
 sys.path.insert(0, sys.argv[1])
 from carom import Simulation, TimeStepping
 from models import ball, is_running
@@ -125,6 +125,7 @@ simulation = Simulation(ball()[0], TimeStepping(step=1e-6))
 
 def press():
     assert is_running(simulation)
+    time.sleep(0.2)  # on a busy machine it may not have made a step yet
     os.kill(os.getpid(), signal.SIGINT)
 
 threading.Thread(target=press).start()
