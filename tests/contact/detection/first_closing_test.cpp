@@ -260,9 +260,11 @@ TEST(FirstClosingOfTwoBodies, OfDiscsInFreeFlightIsTheRootOfTheirDistance) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   int closings = 0;
-  for (int i = 0; i < 200; ++i) {
-    const Vec<2> apart(1.0 + unit(random), 2.0 * radius + 1e-3 + std::abs(unit(random)));
-    const Vec<2> velocity(-2.0 + unit(random), -1.0 + unit(random)), common(unit(random), unit(random));
+  for (int i = 0; i < 400; ++i) {
+    std::array<double, 6> drawn{};  // in turn: compilers evaluate arguments in different orders
+    for (double& number : drawn) number = unit(random);
+    const Vec<2> apart(1.0 + drawn[0], 2.0 * radius + 1e-3 + std::abs(drawn[1]));
+    const Vec<2> velocity(-2.0 + drawn[2], -1.0 + drawn[3]), common(drawn[4], drawn[5]);
     System system = with_surface();
     add_disc(system, {0.0, 0.0}, common);
     add_disc(system, apart, common + velocity);
