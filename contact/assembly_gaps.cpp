@@ -154,4 +154,24 @@ void AssemblyGaps::close_joints(const double* displacement, double* sum) {
   }
 }
 
+Separation separate_all(const Assembly& assembly, const Detector& detector, const GroundPlaces& places,
+                        AssemblyGaps& gaps, SolverChain& chain, State& state, Evaluation& evaluation) {
+  const auto components = static_cast<Index>(assembly.components().size());
+  if (components == 0) return {};
+  std::vector<JointConstraints> joints;
+  for (Index component = 0; component < components; ++component) {
+    append_constraints(assembly, component, joints);
+  }
+  const std::vector<JointConstraints*> bound = addresses_of(joints);
+  gaps.bind({.assembly = assembly,
+             .detector = detector,
+             .places = places,
+             .components = {0, components},
+             .joints = bound,
+             .all = true,
+             .touch = detector.bodies_touch()},
+            state, evaluation);
+  return Separator().separate(gaps, chain);
+}
+
 }  // namespace carom

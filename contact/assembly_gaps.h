@@ -6,6 +6,7 @@
 #include <carom/contact/detection/body_contacts.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/gap_source.h>
+#include <carom/contact/separation.h>
 #include <carom/core/assembly.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_constraints.h>
@@ -68,5 +69,12 @@ private:
   std::vector<JointConstraints*> mechanisms_;  // their joints, ascending
   std::vector<double> moved_, rows_;
 };
+
+/// Moves all bodies of a model out of all that they have sunk into. \param places of shapes on ground at the
+/// time of the state \param gaps keeps the contacts that the result tells of \param evaluation its position
+/// group is up to date, and is so again
+CAROM_API Separation separate_all(const Assembly& assembly, const Detector& detector,
+                                  const GroundPlaces& places, AssemblyGaps& gaps, SolverChain& chain,
+                                  State& state, Evaluation& evaluation);
 
 }  // namespace carom

@@ -120,23 +120,8 @@ void book(const StoredEnergies& stored, const ChainStatistics& solved, std::size
 /// Moves bodies out of all shapes on ground, for out of one they may come into another, and apart.
 Separation move_apart(const Assembly& assembly, const Detector& detector, const GroundPlaces& places,
                       SolverChain& chain, State& trial, Evaluation& evaluation) {
-  const auto components = static_cast<Index>(assembly.components().size());
-  if (components == 0) return {};
-  std::vector<JointConstraints> joints;
-  for (Index component = 0; component < components; ++component) {
-    append_constraints(assembly, component, joints);
-  }
-  const std::vector<JointConstraints*> bound = addresses_of(joints);
   AssemblyGaps gaps;
-  gaps.bind({.assembly = assembly,
-             .detector = detector,
-             .places = places,
-             .components = {0, components},
-             .joints = bound,
-             .all = true,
-             .touch = detector.bodies_touch()},
-            trial, evaluation);
-  Separation result = Separator().separate(gaps, chain);
+  Separation result = separate_all(assembly, detector, places, gaps, chain, trial, evaluation);
   if (result.left != nullptr) fail_wedged(detector, result, trial.time);
   result.together = {};  // of the gaps, which end here
   return result;

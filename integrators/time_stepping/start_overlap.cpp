@@ -3,7 +3,6 @@
 #include <carom/contact/assembly_gaps.h>
 #include <carom/contact/detection/contact_look.h>
 #include <carom/contact/separation.h>
-#include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_closure.h>
 #include <carom/core/errors.h>
 #include <carom/integrators/time_stepping/start_overlap.h>
@@ -31,35 +30,21 @@ void demand_depth(const Assembly& assembly, const Detector& detector, const Stat
   if (deepest != contacts.end() && deepest->gap < -largest) refuse(detector, *deepest, largest);
 }
 
-/// Moves all bodies by the least displacement.
-double separate_all(const Assembly& assembly, const Detector& detector, State& state) {
-  const auto components = static_cast<Index>(assembly.components().size());
-  std::vector<JointConstraints> joints;
-  for (Index component = 0; component < components; ++component) {
-    append_constraints(assembly, component, joints);
-  }
+/// Moves all bodies by the least displacement. Returns the largest [m].
+double separate_at_start(const Assembly& assembly, const Detector& detector, State& state) {
   GroundPlaces places;
   detector.place(state.time, places);
   Evaluation evaluation = make_evaluation(assembly);
   evaluate_positions(assembly, state.view(), evaluation);
-  const std::vector<JointConstraints*> bound = addresses_of(joints);
   AssemblyGaps gaps;
-  gaps.bind({.assembly = assembly,
-             .detector = detector,
-             .places = places,
-             .components = {0, components},
-             .joints = bound,
-             .all = true,
-             .touch = detector.bodies_touch()},
-            state, evaluation);
   SolverChain chain;
-  const Separation result = Separator().separate(gaps, chain);
+  const Separation result = separate_all(assembly, detector, places, gaps, chain, state, evaluation);
   if (result.left != nullptr) {
     throw ModelError("time stepping: overlaps.separate_at_start: no displacement brings " +
                      detector.name(result.left->key) + " apart, gap " + to_text(result.left->gap) +
                      " m; allowed: bodies that have room");
   }
-  if (!result.moved || joints.empty()) return result.shift;
+  if (!result.moved) return result.shift;
   return std::max(result.shift, close_joints(assembly, state).shift);
 }
 
@@ -74,7 +59,7 @@ double prepare_overlaps(const Assembly& assembly, const Detector& detector, cons
     return 0.0;
   }
   State trial = state;
-  const double shift = separate_all(assembly, detector, trial);
+  const double shift = separate_at_start(assembly, detector, trial);
   state = std::move(trial);
   return shift;
 }
