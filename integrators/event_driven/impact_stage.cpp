@@ -49,9 +49,9 @@ bool ImpactStage::resolve(EventInstant& at) {
     for (std::size_t island = 0; island < at.islands.size(); ++island) {
       const std::span<const Index> pairs = at.islands.pairs(island);
       const double fastest = fastest_approach(pairs, at);
+      if (!(fastest > at.scales.speed_noise)) continue;  // mostly: nobody asks what is slow then
       const ImpactOnset onset = onset_of(fastest, at.scales.speed_noise, capture_speed(pairs, at),
                                          counts[island].sequence, impacts_of_events);
-      if (onset == ImpactOnset::nothing) continue;
       resolve_island(pairs, onset, counts[island], at);
       any = struck = true;
     }
