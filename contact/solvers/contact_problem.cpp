@@ -204,4 +204,9 @@ void ContactProblem::velocities(std::span<const double> impulse, std::span<doubl
   for (std::size_t i = 0; i < n; ++i) xi[i] = accurate_dot(std::span(w_).subspan(i * n, n), impulse, b_[i]);
 }
 
+bool has_discs(const ContactProblem& problem) {
+  return std::ranges::any_of(problem.sets(),
+                             [](const RowSet& set) { return set.kind == SetKind::bounded_disc; });
+}
+
 }  // namespace carom

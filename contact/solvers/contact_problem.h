@@ -121,4 +121,7 @@ private:
   std::vector<RowGroup> groups_;
 };
 
+/// True of a problem in which friction of some contact lies in a disc.
+[[nodiscard]] CAROM_API bool has_discs(const ContactProblem& problem);
+
 }  // namespace carom

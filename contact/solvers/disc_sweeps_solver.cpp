@@ -130,8 +130,7 @@ void DiscSweepsSolver::visit(const ContactProblem& problem, const RowGroup& grou
 }
 
 SolverAnswer DiscSweepsSolver::solve(const ContactProblem& problem, std::span<double> impulse) {
-  const auto is_disc = [](const RowSet& set) { return set.kind == SetKind::bounded_disc; };
-  if (std::ranges::none_of(problem.sets(), is_disc)) return {Outcome::not_solved, false, 0, "not applicable"};
+  if (!has_discs(problem)) return {Outcome::not_solved, false, 0, "not applicable"};
   const auto n = static_cast<std::size_t>(problem.rows());
   impulse_.assign(n, 0.0);
   trial_.resize(n);

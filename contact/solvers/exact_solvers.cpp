@@ -28,11 +28,6 @@ bool finite(const ContactProblem& problem) {
   return std::ranges::all_of(problem.matrix(), good) && std::ranges::all_of(problem.vector(), good);
 }
 
-bool has_discs(const ContactProblem& problem) {
-  return std::ranges::any_of(problem.sets(),
-                             [](const RowSet& set) { return set.kind == SetKind::bounded_disc; });
-}
-
 }  // namespace
 
 /// Null of what is none of the solvers of an answer.
