@@ -147,7 +147,7 @@ bool RestingConstraints::sticks() const {
 
 void RestingConstraints::slide(const StateView& state, const Evaluation& evaluation, double part,
                                const VectorXd& change) {
-  Constraint contact;
+  SingleConstraint contact;
   for (Support& support : supports_) {
     if (support.rows == 1) continue;
     detector_.contact(support.pair, state, evaluation, places_, contact);
@@ -169,7 +169,7 @@ void RestingConstraints::add_forces(Index body, const JointView& view, const Eva
       rows[row].add_transposed(multipliers[eigen_index(joint.row + row)], forces);
     }
   }
-  Constraint contact;
+  SingleConstraint contact;
   for (const std::size_t j : supports_of_body_[body]) {
     const Support& support = supports_[j];
     detector_.contact(support.pair, view.state, evaluation, places_, contact);
@@ -182,7 +182,7 @@ void RestingConstraints::add_forces(Index body, const JointView& view, const Eva
 std::optional<RestingConstraints::Entered> RestingConstraints::find_entered(const StateView& state,
                                                                             const Evaluation& evaluation,
                                                                             double tolerance) const {
-  Constraint contact;
+  SingleConstraint contact;
   for (Index component = 0; component < assembly_->components().size(); ++component) {
     for (const ContactPair& pair : detector_.pairs(component)) {
       if (std::any_of(supports_.begin(), supports_.end(),

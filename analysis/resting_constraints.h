@@ -34,7 +34,7 @@ public:
   /// A closed contact and its rows: the normal, and the tangents if it sticks.
   struct Support {
     ContactPair pair;
-    Constraint at;
+    SingleConstraint at;
     Index row = 0;                 ///< the first
     int rows = 1;                  ///< how many
     std::array<double, 2> slid{};  ///< displacement of the place of touch along the tangents [m]

@@ -6,6 +6,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/single_contact.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 
 #include <benchmark/benchmark.h>
 
@@ -135,16 +136,15 @@ public:
     const auto& bodies = assembly_.layout()->bodies();
     for (std::size_t body = 0; body < impacts().size(); ++body) {
       const Impact& i = impacts()[body];
-      carom::Constraint contact;
+      carom::Constraint& contact = contacts_.add();
       contact.add_body(static_cast<carom::Index>(body), bodies[body].v, 3);
-      contact.rows = 2;
+      contact.start_rows(2);
       contact.law = {i.friction, i.normal_restitution, i.tangential_restitution};
       contact.friction = i.friction;
       // Normal along y, tangent along x.
       const std::array<double, 3> normal{0.0, 1.0, i.lever_t}, tangent{1.0, 0.0, -i.lever_n};
       std::copy(normal.begin(), normal.end(), contact.row(0));
       std::copy(tangent.begin(), tangent.end(), contact.row(1));
-      contacts_.push_back(contact);
       velocity_.insert(velocity_.end(), {i.before_t, i.before_n, 0.0});
     }
   }
@@ -171,7 +171,7 @@ private:
   }
 
   carom::Assembly assembly_;
-  std::vector<carom::Constraint> contacts_;
+  carom::ConstraintSet contacts_;
   std::vector<double> velocity_;
   carom::MassResponse masses_{assembly_};
   carom::IslandProblem cluster_;

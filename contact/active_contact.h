@@ -24,7 +24,7 @@ struct ActiveContact {
   /// is but one.
   Index feature = none;
   bool frictionless = false;  ///< without friction: neither sticks nor cares which way it slips
-  Constraint at;              ///< at the present configuration
+  SingleConstraint at;        ///< at the present configuration
   double friction = 0.0;      ///< coefficient: sliding where it slips, static where it sticks
   /// Force; of friction in a joint Constraint::friction_bound; of rolling resistance that of its contact [N].
   double normal = 0.0;

@@ -46,7 +46,7 @@ void ActiveSet::update(const Detector& detector, const StateView& state, const E
   const Constraint* last = nullptr;
   for (ActiveContact& contact : contacts_) {
     if (contact.pair.rolling) {
-      contact.at = rolling_resistance(*last, motion_of(detector, contact.pair, places));
+      write_rolling_resistance(*last, motion_of(detector, contact.pair, places), contact.at);
     } else if (contact.feature != none) {
       follow(detector, contact.pair, contact.feature, state, evaluation, places, contact.at);
     } else {

@@ -37,7 +37,7 @@ std::span<Constraint> AssemblyGaps::find(double margin) {
   bodies_->detector.find(bodies_->components, query, contacts_);
   if (bodies_->touch) bodies_->detector.bodies().find(query, search_, contacts_);
   if (bodies_->all) return contacts_;
-  std::erase_if(contacts_, [&](const Constraint& contact) {
+  contacts_.remove_if([&](const Constraint& contact) {
     return !std::binary_search(wanted_.begin(), wanted_.end(), pair_of(contact.key));
   });
   return contacts_;

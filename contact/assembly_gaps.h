@@ -8,6 +8,7 @@
 #include <carom/contact/gap_source.h>
 #include <carom/contact/separation.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
@@ -60,7 +61,7 @@ private:
   Evaluation* evaluation_ = nullptr;
   std::optional<ComponentsResponse> response_;
   BodyContactSearch search_;
-  std::vector<Constraint> contacts_;
+  ConstraintSet contacts_;
   std::vector<ConstraintKey> wanted_;          // contacts that take part, ascending
   std::vector<double> unmoved_;                // q from which displacements are
   std::vector<double> lengths_;                // of the assembly

@@ -11,7 +11,7 @@ namespace carom {
 
 /// Sets `body`, and `other` or `obstacle` of a record, or none of a joint limit, from its constraint.
 template <class Record>
-void set_parties(const Constraint& at, const Assembly& assembly, Record& out) {
+void set_parties(const ConstraintHead& at, const Assembly& assembly, Record& out) {
   const Layout& layout = *assembly.layout();
   const bool of_bodies = at.type == ConstraintType::contact && at.bodies == 2;
   const bool of_ground = at.key.b.owner == FeatureKey::Owner::obstacle;

@@ -22,7 +22,7 @@ namespace carom {
 [[nodiscard]] inline std::array<double, 2> times_both_rows(const Constraint& at, const double* numbers) {
   constexpr int of_planar_body = 3;
   if (at.bodies == 1 && at.blocks[0].columns == of_planar_body) {
-    const double *const v = numbers + at.blocks[0].v, *const n = at.jacobian.data();
+    const double *const v = numbers + at.blocks[0].v, *const n = at.row(0);
     const double* const t = n + of_planar_body;
     return {0.0 + n[0] * v[0] + n[1] * v[1] + n[2] * v[2], 0.0 + t[0] * v[0] + t[1] * v[1] + t[2] * v[2]};
   }
@@ -30,7 +30,7 @@ namespace carom {
     return times_row_by_row(at, numbers);
   }
   const double *const a = numbers + at.blocks[0].v, *const b = numbers + at.blocks[1].v;
-  const double *const n = at.jacobian.data(), *const t = n + 2 * of_planar_body;
+  const double *const n = at.row(0), *const t = n + 2 * of_planar_body;
   return {n[0] * a[0] + n[1] * a[1] + n[2] * a[2] + n[3] * b[0] + n[4] * b[1] + n[5] * b[2],
           t[0] * a[0] + t[1] * a[1] + t[2] * a[2] + t[3] * b[0] + t[4] * b[1] + t[5] * b[2]};
 }
@@ -57,7 +57,7 @@ namespace carom {
   }
   const double *const a = velocities + at.blocks[0].v, *const b = velocities + at.blocks[1].v;
   std::array<double, 2> sum{std::abs(at.surface_velocity[0]), std::abs(at.surface_velocity[1])};
-  const double* h = at.jacobian.data();
+  const double* h = at.row(0);
   for (double& row : sum) {
     for (int k = 0; k < of_planar_body; ++k) row += std::abs(*h++ * a[k]);
     for (int k = 0; k < of_planar_body; ++k) row += std::abs(*h++ * b[k]);

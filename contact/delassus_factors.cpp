@@ -32,7 +32,7 @@ namespace {
 /// Both rows of a contact between two bodies that turn, the usual case in a pile.
 void write_rows_of_two(const Constraint& at, const std::array<int, 3>& slots, ResponseFactors::Row* rows) {
   constexpr std::size_t width = 2 * ResponseFactors::columns;
-  const double* h = at.jacobian.data();
+  const double* h = at.row(0);
   for (ResponseFactors::Row* row = rows; row < rows + 2; ++row, h += width) {
     row->slot = slots;
     for (std::size_t k = 0; k < width; ++k) row->h[k] = h[k];

@@ -27,11 +27,20 @@ void IslandPartition::find_order() {
   }
 }
 
-/// Constraints are large: each is moved once.
+/// Constraints are large: each is moved once, along the cycles of the order. Their rows stay.
 void IslandPartition::bring_together(std::span<Constraint> constraints) {
   find_order();
-  moved_.assign(constraints.begin(), constraints.end());
-  for (std::size_t i = 0; i < moved_.size(); ++i) constraints[i] = moved_[order_[i]];
+  for (Index first = 0; first < order_.size(); ++first) {
+    if (order_[first] == first) continue;
+    Constraint aside = std::move(constraints[first]);
+    Index place = first;
+    for (Index from = order_[place]; from != first; place = from, from = order_[place]) {
+      constraints[place] = std::move(constraints[from]);
+      order_[place] = place;
+    }
+    constraints[place] = std::move(aside);
+    order_[place] = place;
+  }
 }
 
 std::span<const Range> IslandPartition::list_islands() {

@@ -19,7 +19,7 @@ inline constexpr std::size_t of_planar_body = 3;  // the last of them its spin
 /// Numbers of a row of a constraint of one body of S velocities.
 template <std::size_t S>
 const double* row_of_one(const Constraint& at, int row) {
-  return at.jacobian.data() + S * static_cast<std::size_t>(row);
+  return at.row(0) + S * static_cast<std::size_t>(row);
 }
 
 /// Responses of one body of S velocities.
@@ -96,7 +96,7 @@ void multiply_symmetric(std::span<const ImpulseDirection> directions, const doub
 /// multiply_symmetric() without loops, and without a way through memory between the two.
 /// \param x out: 3 responses to each of both rows \param matrix out: W, 2 x 2
 inline void answer_contact(const Constraint& at, const BodyMasses& masses, double* x, double* matrix) {
-  const double *const n = at.jacobian.data(), *const t = n + of_planar_body;
+  const double *const n = at.row(0), *const t = n + of_planar_body;
   const double mass = *masses.mass, inertia = *masses.inertia;
   const Pair r01 = Pair{n[0], n[1]} / both(mass), r23 = Pair{n[2], t[0]} / Pair{inertia, mass},
              r45 = Pair{t[1], t[2]} / Pair{mass, inertia};

@@ -29,14 +29,14 @@ std::optional<ImpactLaw> law_of_impact(std::span<const Constraint> constraints) 
   return law ? law : ImpactLaw::newton;
 }
 
-void keep_fastest(std::vector<Constraint>& constraints, const double* velocities) {
+void keep_fastest(ConstraintSet& constraints, const double* velocities) {
   double fastest = 0.0;
   for (const Constraint& constraint : constraints) {
     fastest = std::max(fastest, -constraint.normal_velocity(velocities));
   }
   const double least = (1.0 - same_speed) * fastest;
   bool kept = true;  // the contact that rolling resistance belongs to
-  std::erase_if(constraints, [&](const Constraint& constraint) {
+  constraints.remove_if([&](const Constraint& constraint) {
     if (constraint.type == ConstraintType::rolling) return !kept;
     kept = constraint.has_dry_friction() || !(-constraint.normal_velocity(velocities) < least);
     return !kept;
@@ -102,8 +102,7 @@ ImpactOnset onset_of(double fastest, double noise, double capture_speed, int str
   return of_mode.closes_slow ? ImpactOnset::closing : ImpactOnset::nothing;
 }
 
-Struck strike(std::vector<Constraint>& touching, const StrikeInput& in,
-              FunctionRef<StrikeAnswer(ImpactLaw)> solve) {
+Struck strike(ConstraintSet& touching, const StrikeInput& in, FunctionRef<StrikeAnswer(ImpactLaw)> solve) {
   Struck out;
   if (in.rules.order == ImpactOrder::sequential && !in.plastic) {
     out.cut_sequence = in.struck >= in.rules.sequence_limit;

@@ -9,7 +9,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/impact_rules.h>
 #include <carom/contact/solvers/impact_solver.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/function_ref.h>
 #include <carom/core/surface.h>
@@ -29,7 +29,7 @@ namespace carom {
 
 /// Leaves of the constraints of an impact the one that approaches fastest, those as fast up to 1e-9 of its
 /// speed, and friction in joints. \param velocities of all bodies
-CAROM_API void keep_fastest(std::vector<Constraint>& constraints, const double* velocities);
+CAROM_API void keep_fastest(ConstraintSet& constraints, const double* velocities);
 
 /// Work of the answer of an impact, and its scale. \param problem with free velocities, which are those
 /// before
@@ -109,7 +109,7 @@ struct Struck {
 /// Solves one impact of constraints that touch each other. Velocities are left alone.
 /// \param touching with their restitution; it is left with those that took part, as they did
 /// \param solve states and solves the impact of `touching` as it is then, by the law that it is given
-[[nodiscard]] CAROM_API Struck strike(std::vector<Constraint>& touching, const StrikeInput& in,
+[[nodiscard]] CAROM_API Struck strike(ConstraintSet& touching, const StrikeInput& in,
                                       FunctionRef<StrikeAnswer(ImpactLaw)> solve);
 
 /// Problems of impacts, one by Newton's law and one by others. Keeps memory only.

@@ -8,13 +8,19 @@
 #include <carom/core/ids.h>
 #include <carom/core/surface.h>
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 namespace carom {
+
+class RowStore;
 
 /// One feature of something that can touch.
 struct FeatureKey {
@@ -62,16 +68,15 @@ enum class ConstraintType : std::uint8_t {
   contact,         ///< row 0 along the normal, P_n >= 0; the others tangential, bounded by friction times P_n
   limit,           ///< one row, P >= 0: limit of a joint's coordinate
   joint_friction,  ///< one row, |P| <= friction times friction_bound: dry friction along a joint's coordinate
-  rolling          ///< likewise, |M| <= friction times P_n: rolling resistance of the contact before it
+  rolling          ///< one row, |M| <= friction times P_n: rolling resistance of the contact before it
 };
 
 /// A constraint of one to three bodies at one configuration, against each other or against what is fixed to
-/// the ground. Row 0 of a contact is the normal direction (from `b` of the key towards `a`), the others are
-/// tangential (in the plane: the normal turned clockwise).
-struct Constraint {
+/// the ground, without the numbers of its rows. Row 0 of a contact is the normal direction (from `b` of the
+/// key towards `a`), the others are tangential (in the plane: the normal turned clockwise).
+struct ConstraintHead {
   static constexpr int max_rows = 3;
   static constexpr int max_bodies = 3;
-  static constexpr int max_columns = 9;  ///< of three bodies in the plane
 
   /// Columns of one body.
   struct Block {
@@ -105,11 +110,9 @@ struct Constraint {
   double allowed_approach = 0.0;
   std::array<double, static_cast<std::size_t>(max_rows)>
       surface_velocity{};  ///< of the moving ground shape where it is touched, along the rows [m/s]
-  std::array<double, static_cast<std::size_t>(max_rows)>
-      surface_velocity_after{};  ///< likewise of the same place at the end of a time step; else the same as
-                                 ///< surface_velocity [m/s]
-  std::array<double, static_cast<std::size_t>(max_rows* max_columns)>
-      jacobian{};  ///< row by row, of columns() numbers each, block after block
+  /// Velocity of the same place of the ground shape at the end of a time step, along the rows; else the same
+  /// as surface_velocity [m/s].
+  std::array<double, static_cast<std::size_t>(max_rows)> surface_velocity_after{};
 
   ConstraintKey key;  ///< identity
   double gap = 0.0;   ///< negative where violated [m]
@@ -130,7 +133,7 @@ struct Constraint {
   void remove_restitution() { law.normal_restitution = law.tangential_restitution = 0.0; }
   /// Its first body.
   [[nodiscard]] Index body() const { return blocks[0].body; }
-  /// Appends a body, before rows are written. \param v first of its velocities \param width their number
+  /// Appends a body, before the rows are. \param v first of its velocities \param width their number
   void add_body(Index body, Index v, int width) {
     blocks[static_cast<std::size_t>(bodies++)] = {body, v, width};
   }
@@ -141,9 +144,72 @@ struct Constraint {
   }
   /// Number of columns of all bodies: numbers of a row.
   [[nodiscard]] int columns() const { return blocks[0].columns + blocks[1].columns + blocks[2].columns; }
-  /// Row i of the Jacobian.
-  [[nodiscard]] const double* row(int i) const { return jacobian.data() + columns() * i; }
-  [[nodiscard]] double* row(int i) { return jacobian.data() + columns() * i; }
+  /// Makes it as by default. Room for rows stays.
+  void clear() { *this = {}; }
+  /// Makes it ready for a contact, whatever it was: what not every contact writes is as made by default. Key,
+  /// law, friction, gap, bodies and rows are to be written.
+  void start_contact() {
+    if (type != ConstraintType::contact) return clear();
+    drift = surface_velocity = surface_velocity_after = {};  // of a contact the rest is as made by default
+    allowed_approach = 0.0;
+  }
+  /// True if its rows turn: velocities along them change although those of the bodies do not. \param step of
+  /// how long [s] \param negligible motion by that over the step that does not count [m]
+  [[nodiscard]] bool turns(double step, double negligible) const {
+    const double all = std::abs(drift[0]) + std::abs(drift[1]) + std::abs(drift[2]);
+    return !(step * step * all <= negligible);
+  }
+  /// Makes a constraint of a time step that of its first part. \param part 0 to 1: share of the step
+  void shorten(double part) {
+    for (std::size_t i = 0; i < surface_velocity.size(); ++i) {
+      surface_velocity_after[i] =
+          surface_velocity[i] + part * (surface_velocity_after[i] - surface_velocity[i]);
+    }
+  }
+};
+
+/// A constraint with its rows. It stands in a set, which holds the numbers of the rows of all (ConstraintSet,
+/// core/constraint_set.h), or alone (SingleConstraint); nothing else copies one, and what is moved stays in
+/// the same set.
+class Constraint : public ConstraintHead {
+public:
+  /// A constraint of a set. \param store of the set, which must outlive it
+  explicit Constraint(RowStore& store) { room_.store = &store; }
+  Constraint(const Constraint&) = delete;
+  Constraint& operator=(const Constraint&) = delete;
+  /// Takes the place of another one with its room for rows.
+  Constraint(Constraint&& other) noexcept : ConstraintHead(other), room_(other.room_) {
+    assert(room_.size == 0 || room_.store != nullptr);  // a single one keeps its room
+    other.room_ = {};
+  }
+  /// Both exchange their room for rows, so that none is lost when members of a set change places.
+  Constraint& operator=(Constraint&& other) noexcept {
+    assert(room_.size == 0 || room_.store != nullptr);
+    assert(other.room_.size == 0 || other.room_.store != nullptr);
+    static_cast<ConstraintHead&>(*this) = other;
+    std::swap(room_, other.room_);
+    return *this;
+  }
+
+  /// Gives it rows of the bodies that it has; their numbers are to be written, all of them.
+  /// \param count 1 to max_rows
+  void start_rows(int count) {
+    rows = count;
+    if (const auto needed = static_cast<std::size_t>(count * columns()); needed > room_.size) grow(needed);
+  }
+  /// Takes everything but its place from a constraint of any set.
+  void take(const Constraint& other) {
+    static_cast<ConstraintHead&>(*this) = other;
+    take_rows(other);
+  }
+  /// Takes the numbers of the rows of a constraint that has as many, of the same bodies.
+  void take_rows(const Constraint& other) {
+    start_rows(other.rows);
+    std::copy_n(other.room_.first, rows * columns(), room_.first);
+  }
+  /// Row i of the Jacobian, columns() numbers, block after block; the next one stands behind it.
+  [[nodiscard]] const double* row(int i) const { return room_.first + columns() * i; }
+  [[nodiscard]] double* row(int i) { return room_.first + columns() * i; }
   /// Row i times numbers of the bodies. \param numbers an array over all velocities
   [[nodiscard]] double times(int i, const double* numbers) const {
     double sum = 0.0;
@@ -178,10 +244,11 @@ struct Constraint {
   [[nodiscard]] double tangential_velocity(const double* velocities) const {
     return velocity(tangent_row(), velocities);
   }
-  /// Rates of both. \param accelerations of all bodies
+  /// Acceleration along the normal; 0 of a row without one. \param accelerations of all bodies
   [[nodiscard]] double normal_acceleration(const double* accelerations) const {
     return has_dry_friction() ? 0.0 : acceleration(0, accelerations);
   }
+  /// Acceleration along the tangent of the plane, or along the coordinate of the joint; 0 of a limit.
   [[nodiscard]] double tangential_acceleration(const double* accelerations) const {
     return acceleration(tangent_row(), accelerations);
   }
@@ -195,23 +262,21 @@ struct Constraint {
   [[nodiscard]] double velocity_after(int i, const double* velocities) const {
     return times(i, velocities) - surface_velocity_after[static_cast<std::size_t>(i)];
   }
-  /// True if its rows turn: velocities along them change although those of the bodies do not. \param step of
-  /// how long [s] \param negligible motion by that over the step that does not count [m]
-  [[nodiscard]] bool turns(double step, double negligible) const {
-    const double all = std::abs(drift[0]) + std::abs(drift[1]) + std::abs(drift[2]);
-    return !(step * step * all <= negligible);
-  }
-  /// Makes a constraint of a time step that of its first part. \param part 0 to 1: share of the step
-  void shorten(double part) {
-    for (std::size_t i = 0; i < surface_velocity.size(); ++i) {
-      surface_velocity_after[i] =
-          surface_velocity[i] + part * (surface_velocity_after[i] - surface_velocity[i]);
-    }
-  }
   /// Rate of the velocity along row i. \param accelerations of all bodies
   [[nodiscard]] double acceleration(int i, const double* accelerations) const {
     return times(i, accelerations) + drift[static_cast<std::size_t>(i)];
   }
+
+protected:
+  // Where the numbers of its rows stand.
+  struct Room {
+    double* first = nullptr;
+    std::size_t size = 0;
+    RowStore* store = nullptr;  // of its set; null of a single constraint
+  };
+  Constraint() = default;
+
+  Room room_;
 
 private:
   /// Calls f(number of row i, its place among all velocities).
@@ -220,7 +285,7 @@ private:
     constexpr int of_planar_body = 3;
     if (bodies == 1 && blocks[0].columns <= of_planar_body) {  // the usual case, without loops
       const int width = blocks[0].columns;
-      const double* const h = jacobian.data() + width * i;
+      const double* const h = room_.first + width * i;
       const Index v = blocks[0].v;
       f(h[0], v);
       f(h[1], v + 1);
@@ -233,6 +298,8 @@ private:
       for (int c = 0; c < block.columns; ++c) f(*h++, block.v + static_cast<Index>(c));
     }
   }
+
+  CAROM_API void grow(std::size_t needed);
 };
 
 }  // namespace carom

@@ -17,7 +17,7 @@ namespace {
 /// Deepest penetration of the present state, of bodies into ground or each other [m].
 double deepest_penetration(const Simulation& simulation) {
   const Detector detector(simulation.assembly());
-  std::vector<Constraint> contacts;
+  ConstraintSet contacts;
   ContactLook(simulation.assembly(), detector).find(simulation.state().view(), 0.0, contacts);
   double deepest = 0.0;
   for (const Constraint& contact : contacts) deepest = std::max(deepest, -contact.gap);

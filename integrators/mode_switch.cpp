@@ -24,7 +24,8 @@ namespace {
 
 /// Names all contacts that leave no room between them, the deepest first.
 [[noreturn]] void fail_wedged(const Detector& detector, const Separation& result, double time) {
-  std::vector<Constraint> contacts(result.together.begin(), result.together.end());
+  ConstraintSet contacts;
+  contacts.assign(result.together);
   std::stable_sort(contacts.begin(), contacts.end(),
                    [](const Constraint& a, const Constraint& b) { return a.gap < b.gap; });
   SolverFailure failure;
@@ -60,24 +61,24 @@ void apply(const Assembly& assembly, const IslandProblem& island, State& trial, 
 
 /// Lists the closed contacts of a component, behind each its rolling resistance.
 void find_closed(const Detector& detector, const GroundPlaces& places, Index component, const State& state,
-                 const Evaluation& evaluation, std::vector<Constraint>& contacts) {
+                 const Evaluation& evaluation, ConstraintSet& contacts) {
   contacts.clear();
   detector.find(component, state.view(), evaluation, places, nullptr, 0.0, contacts);
   if (!resists_rolling(detector)) return;
-  std::vector<Constraint> with_rolling;
+  ConstraintSet with_rolling;
   for (const Constraint& contact : contacts) {
-    with_rolling.push_back(contact);
+    with_rolling.add(contact);
     if (contact.type != ConstraintType::contact || !contact.law.resists_rolling()) continue;
-    with_rolling.push_back(rolling_resistance(contact, ground_motion_of(detector, contact, places)));
+    write_rolling_resistance(contact, ground_motion_of(detector, contact, places), with_rolling.add());
   }
-  contacts.swap(with_rolling);
+  std::swap(contacts, with_rolling);
 }
 
 /// Gaps of contacts, ascending by key.
 using Gaps = std::vector<std::pair<ConstraintKey, double>>;
 
 Gaps gaps_within(double reach, ContactLook& look, const State& state) {
-  std::vector<Constraint> contacts;
+  ConstraintSet contacts;
   look.find(state.view(), reach, contacts);
   Gaps gaps;
   gaps.reserve(contacts.size());
@@ -140,7 +141,7 @@ void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& st
   const auto bodies = static_cast<Index>(assembly.layout()->bodies().size());
   GroundPlaces places;
   detector.place(state.time, places);
-  std::vector<Constraint> contacts;
+  ConstraintSet contacts;
   EventBalance balance;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, trial.view(), evaluation);
@@ -152,7 +153,7 @@ void prepare_for_events(const Assembly& assembly, EventDriver& driver, State& st
     const auto islands =
         partition.arrange(std::span(contacts), bodies, [&](Index body) { return assembly.mechanism(body); });
     for (const Range island : islands) {
-      const std::span<const Constraint> of_body(contacts.data() + island.begin, island.size());
+      const auto of_body = std::span<const Constraint>(contacts).subspan(island.begin, island.size());
       const bool approaches = std::any_of(of_body.begin(), of_body.end(), [&](const Constraint& contact) {
         return contact.normal_velocity(trial.v.data()) < 0.0;
       });

@@ -184,9 +184,8 @@ std::span<const BodyTouch> BodyContacts::find_touching(const ContactQuery& query
   return memory.touching;
 }
 
-void BodyContacts::find(const ContactQuery& query, BodyContactSearch& memory,
-                        std::vector<Constraint>& out) const {
-  for (const BodyTouch& touch : find_touching(query, memory)) write(touch, query.state, out.emplace_back());
+void BodyContacts::find(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const {
+  for (const BodyTouch& touch : find_touching(query, memory)) write(touch, query.state, out.add_contact());
 }
 
 /// Adds the contacts of two outlines.
@@ -228,7 +227,7 @@ void BodyContacts::add(Index i, Index j, const ContactQuery& query, BodyContactS
 /// Adds a contact of the step before that is a little open, where turning explains that.
 void BodyContacts::add_lasting(BodyTouch touch, const ContactQuery& query, BodyContactSearch& memory) const {
   Constraint& contact = memory.trial;
-  contact = {};
+  contact.start_contact();
   write(touch, query.state, contact);
   if (query.lasting->lasts(contact.key, touch.gap.gap, std::abs(contact.drift[0]), touch.of_corners)) {
     memory.touching.push_back(touch);
@@ -245,12 +244,7 @@ void BodyContacts::write_rows(const BodyTouch& touch, const BodyContactSearch& m
                               Constraint& out) const {
   const BodyOutline &a = outlines_.list()[touch.a], &b = outlines_.list()[touch.b];
   const ConstraintKey key = key_of(a, b, touch.gap);
-  if (out.type == ConstraintType::contact && out.key == key) {
-    // To clear all of it costs as much as the rows.
-    out.drift = out.surface_velocity = out.surface_velocity_after = {};
-  } else {
-    out = {};
-  }
+  out.start_contact();
   name_contact(key, *law(a, b), out);
   fill_rows(memory.sides[touch.a], memory.sides[touch.b], touch.gap, out);
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));

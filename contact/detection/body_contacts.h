@@ -18,7 +18,7 @@
 #include <carom/contact/detection/pair_rows.h>
 #include <carom/contact/detection/pair_sides.h>
 #include <carom/core/assembly.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/surface.h>
 
@@ -50,7 +50,7 @@ struct BodyContactSearch {
   std::vector<BodyTouch> touching;                        ///< of those, contacts
   std::vector<ConstraintKey> lasting;                     ///< contacts of the step before, and
   std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< outlines of those that are of bodies
-  Constraint trial;                                       ///< of one that turning may have opened
+  SingleConstraint trial;                                 ///< of one that turning may have opened
   std::vector<Index> near;                                ///< outlines near a corner
 };
 
@@ -82,7 +82,7 @@ public:
 
   /// Appends the contacts of all bodies that a query asks for, ordered by the first outline, then the second
   /// one, in the order of assembly.
-  void find(const ContactQuery& query, BodyContactSearch& memory, std::vector<Constraint>& out) const;
+  void find(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const;
   /// The same contacts before their rows are written, for whoever brings them into another order first. Valid
   /// as long as `memory` is left alone.
   [[nodiscard]] std::span<const BodyTouch> find_touching(const ContactQuery& query,

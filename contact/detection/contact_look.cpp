@@ -5,8 +5,8 @@ namespace carom {
 ContactLook::ContactLook(const Assembly& assembly, const Detector& detector)
     : assembly_(&assembly), detector_(&detector), evaluation_(make_evaluation(assembly)) {}
 
-void ContactLook::find(const StateView& state, double margin, std::vector<Constraint>& out,
-                       const GroundPlaces* after, const LastingContacts* lasting) {
+void ContactLook::find(const StateView& state, double margin, ConstraintSet& out, const GroundPlaces* after,
+                       const LastingContacts* lasting) {
   evaluate_positions(*assembly_, state, evaluation_);
   detector_->place(state.time, places_);
   out.clear();

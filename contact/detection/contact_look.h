@@ -6,7 +6,7 @@
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 
@@ -28,8 +28,8 @@ public:
   /// Lists all contacts, and limits of joints, whose gap is <= `margin` [m], as Detector::find_all().
   /// \param after the ground at the end of a step that begins with the state; null: no time passes
   /// \param lasting contacts that may be a little open; null: none
-  void find(const StateView& state, double margin, std::vector<Constraint>& out,
-            const GroundPlaces* after = nullptr, const LastingContacts* lasting = nullptr);
+  void find(const StateView& state, double margin, ConstraintSet& out, const GroundPlaces* after = nullptr,
+            const LastingContacts* lasting = nullptr);
   /// The contact of a pair, whatever its gap, at the state of the last find().
   void contact(const ContactPair& pair, const StateView& state, Constraint& out) const {
     detector_->contact(pair, state, evaluation_, places_, out);

@@ -30,7 +30,7 @@ void fill_rows(const PlacedFeature<D>& at, const Gap& gap, const StateView& stat
   const BodySlot& body = at.body;
   out.clear_bodies();
   out.add_body(at.feature.body, body.v, static_cast<int>(body.v_size));
-  out.rows = D;
+  out.start_rows(D);
   out.gap = gap.distance - at.feature.radius;
   const Vec<D> normal = Eigen::Map<const Vec<D>>(gap.normal.data());
   const auto tangents = Space<D>::tangent_frame(normal);

@@ -9,13 +9,13 @@
 namespace carom {
 
 void Detector::find(Index component, const StateView& state, const Evaluation& evaluation, double margin,
-                    std::vector<Constraint>& out) const {
+                    ConstraintSet& out) const {
   GroundPlaces places;
   place(state.time, places);
   find(component, state, evaluation, places, nullptr, margin, out);
 }
 
-void Detector::find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const {
+void Detector::find(Range components, const ContactQuery& query, ConstraintSet& out) const {
   assert(!has_moving_ground() || query.places.time() == query.state.time);
   if (!pieces_.empty()) {
     for (Index component = components.begin; component < components.end; ++component) {
@@ -78,8 +78,7 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
   out.finish();
 }
 
-void Detector::find_all(const ContactQuery& query, BodyContactSearch& memory,
-                        std::vector<Constraint>& out) const {
+void Detector::find_all(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const {
   find(Range{0, static_cast<Index>(assembly_->components().size())}, query, out);
   if (bodies_touch()) bodies_.find(query, memory, out);
 }
@@ -103,7 +102,7 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
     ContactPair resisted = pair;
     resisted.rolling = false;
     contact(resisted, state, evaluation, places, out);
-    out = rolling_resistance(out, motion_of(*this, pair, places));
+    write_rolling_resistance(out, motion_of(*this, pair, places), out);
     return;
   }
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);

@@ -12,7 +12,7 @@
 #include <carom/contact/detection/joint_rows.h>
 #include <carom/contact/detection/piece_contacts.h>
 #include <carom/core/assembly.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/discontinuity.h>
 #include <carom/core/export.h>
 
@@ -57,26 +57,26 @@ public:
   /// shape on ground; then the limits of joints. The position group of `evaluation` must be up to date.
   /// Places the ground by itself.
   void find(Index component, const StateView& state, const Evaluation& evaluation, double margin,
-            std::vector<Constraint>& out) const;
+            ConstraintSet& out) const;
   /// Likewise with the ground at `places`, which must be of the state's time.
   /// \param after the ground at the end of the step that begins with the state, for
   /// Constraint::surface_velocity_after; null: no time passes
   /// \param lasting contacts of the step before, found also where turning may have opened them; null: none
   void find(Index component, const StateView& state, const Evaluation& evaluation, const GroundPlaces& places,
-            const GroundPlaces* after, double margin, std::vector<Constraint>& out,
+            const GroundPlaces* after, double margin, ConstraintSet& out,
             const LastingContacts* lasting = nullptr) const {
     find(Range{component, component + 1}, {state, evaluation, places, after, margin, lasting}, out);
   }
   /// Likewise of a batch, or of one component.
-  void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
+  void find(Range components, const ContactQuery& query, ConstraintSet& out) const;
   /// Likewise of all components, and the contacts of bodies with each other.
-  void find_all(const ContactQuery& query, BodyContactSearch& memory, std::vector<Constraint>& out) const;
+  void find_all(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const;
   /// True if bodies may touch each other.
   [[nodiscard]] bool bodies_touch() const { return !bodies_.empty(); }
   /// Contacts of bodies with each other.
   [[nodiscard]] const BodyContacts& bodies() const { return bodies_; }
   /// Likewise the contacts of one body with shapes on ground.
-  void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
+  void find_of(Index body, const ContactQuery& query, ConstraintSet& out) const {
     ground_.find_of(body, query, out);
     if (!pieces_.empty()) pieces_.find_of(body, query, out);
   }

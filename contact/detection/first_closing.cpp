@@ -128,7 +128,7 @@ bool has_kinks(const BodyPairBound& bound) {
 
 StepPolynomial::End gap_in(const PairGap& of, const PathSample& at) {
   if (of.bound != nullptr && of.bound->central) return gap_of_discs(*of.bound, at);
-  Constraint contact;
+  SingleConstraint contact;
   of.detector.contact(of.pair, at.state, at.evaluation, at.places, contact);
   return {contact.gap, contact.normal_velocity(at.state.v), contact.normal_acceleration(at.acceleration)};
 }

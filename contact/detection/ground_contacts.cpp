@@ -13,28 +13,6 @@ namespace {
 /// A look at so many points together is not worth while.
 constexpr Index hardly_any = 2;
 
-/// Clears what the rows of a contact with ground do not write, or add to: the rest is the same in all such
-/// contacts, and to clear it costs as much as the rows.
-void clear_state(Constraint& out) {
-  out.drift = out.surface_velocity = out.surface_velocity_after = {};
-  out.allowed_approach = 0.0;
-}
-
-/// Makes a constraint ready for the rows of a contact. That of the same contact keeps what is not of the
-/// state.
-void start(const ConstraintKey& key, Constraint& out) {
-  if (out.key == key) return clear_state(out);
-  out = {};
-}
-
-/// One more constraint, ready likewise.
-Constraint& next_of(std::vector<Constraint>& out) { return out.emplace_back(); }
-Constraint& next_of(KeptList<Constraint>& out) {
-  Constraint& next = out.next();
-  clear_state(next);
-  return next;
-}
-
 /// Calls f(dimension of space).
 template <class F>
 void in_dimension(const Assembly& assembly, F&& f) {
@@ -61,15 +39,11 @@ GroundContacts::GroundContacts(const Assembly& assembly)
       laws_(assembly, features_, shapes_),
       needs_rotations_(features_.any_off_centre()) {}
 
-void GroundContacts::find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const {
+void GroundContacts::find(Range components, const ContactQuery& query, ConstraintSet& out) const {
   in_dimension(*assembly_, [&](auto d) { find_in<d()>(components, query, out); });
 }
 
-void GroundContacts::find(Range components, const ContactQuery& query, KeptList<Constraint>& out) const {
-  in_dimension(*assembly_, [&](auto d) { find_in<d()>(components, query, out); });
-}
-
-void GroundContacts::find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
+void GroundContacts::find_of(Index body, const ContactQuery& query, ConstraintSet& out) const {
   const Index component = assembly_->component_of(body);
   const BodySlot slot = assembly_->layout()->bodies()[body];
   const auto add_point = [&](const BodyFeature& point) {
@@ -161,8 +135,8 @@ bool GroundContacts::only_points(Range runs) const {
   return true;
 }
 
-template <int D, class Out>
-void GroundContacts::find_in(Range components, const ContactQuery& query, Out& out) const {
+template <int D>
+void GroundContacts::find_in(Range components, const ContactQuery& query, ConstraintSet& out) const {
   const BodyFeatures::OfComponents own = features_.of(components);
   if (own.points.size() > hardly_any || !only_points(own.centres)) {
     return find_among<D>(components, query, out);
@@ -174,8 +148,8 @@ void GroundContacts::find_in(Range components, const ContactQuery& query, Out& o
 }
 
 /// Many centres are looked at together.
-template <int D, class Out>
-void GroundContacts::find_among(Range components, const ContactQuery& query, Out& out) const {
+template <int D>
+void GroundContacts::find_among(Range components, const ContactQuery& query, ConstraintSet& out) const {
   const BodySlots& bodies = assembly_->layout()->bodies();
   const std::vector<BodyFeature>& points = features_.points();
   PointsInOrder rest(points, features_.of(components).points);
@@ -207,9 +181,9 @@ void GroundContacts::find_among(Range components, const ContactQuery& query, Out
   rest.before(none, add_point);
 }
 
-template <int D, class Out>
+template <int D>
 void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes,
-                         const ContactQuery& query, Out& out) const {
+                         const ContactQuery& query, ConstraintSet& out) const {
   const PlacedFeature<D> at = place_feature<D>(body, feature, query.state, query.evaluation);
   const std::span<const Index> touched = laws_.touched_by(feature.material);
   for (std::size_t place = 0; place < touched.size(); ++place) {
@@ -232,7 +206,7 @@ void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, Shape
     if (query.leaves_out && query.leaves_out(feature.body, {feature.key, shapes_.key(shape)})) continue;
     GroundAtEnd end = query.end_of(shapes_, shape);
     if (!shapes_.is_flat(shape)) end.step = 0.0;  // where it is touched then is not known
-    Constraint& contact = next_of(out);
+    Constraint& contact = out.add_contact();
     fill(at, shape, gap, query.state, motion, end, contact);
     if (!touches) contact.allowed_approach = distance / query.lasting->step();
   }
@@ -266,7 +240,7 @@ void GroundContacts::contact(const ContactPair& pair, const StateView& state, co
   const BodySlot body = assembly_->layout()->bodies()[pair.body];
   const BodyFeature feature = pair.feature == none ? BodyFeature::at_centre(body, pair.body, pair.material)
                                                    : features_.points()[pair.feature];
-  start(ConstraintKey{feature.key, shapes_.key(pair.ground_shape)}, out);
+  out.start_contact();
   in_dimension(*assembly_, [&]<int D>(std::integral_constant<int, D>) {
     const PlacedFeature<D> at = place_feature<D>(body, feature, state, evaluation);
     const Gap gap = shapes_.gap(pair.ground_shape, motion, at.centre.data());

@@ -9,9 +9,9 @@
 #include <carom/contact/detection/contact_rows.h>
 #include <carom/contact/detection/ground_laws.h>
 #include <carom/contact/detection/ground_shapes.h>
-#include <carom/contact/detection/kept_list.h>
+
 #include <carom/core/assembly.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 
 #include <algorithm>
@@ -46,9 +46,7 @@ public:
 
   /// Appends the contacts of consecutive components that a query asks for, ordered by body, feature and
   /// shape.
-  void find(Range components, const ContactQuery& query, std::vector<Constraint>& out) const;
-  /// Likewise. \param out a list of contacts with ground alone: of each the state is written, no more
-  void find(Range components, const ContactQuery& query, KeptList<Constraint>& out) const;
+  void find(Range components, const ContactQuery& query, ConstraintSet& out) const;
   /// False if surely find() finds none.
   [[nodiscard]] bool any_near(Range components, const ContactQuery& query) const;
   /// All rows of centres: together they have all bodies that touch. Made at each call. \param margin largest
@@ -59,8 +57,8 @@ public:
   /// False if surely no contact of a row, whose shape is at rest, has a gap up to the margin. \param q all
   /// coordinates
   [[nodiscard]] bool may_touch(const CentreRow& row, const double* q) const;
-  /// Likewise those of one body.
-  void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
+  /// Appends the contacts of one body that a query asks for, in the order of find().
+  void find_of(Index body, const ContactQuery& query, ConstraintSet& out) const;
   /// Number of pairs of points of some components and shapes that they may touch.
   [[nodiscard]] std::size_t count_pairs(Range components) const;
   /// Appends all pairs of one component, in the order of find().
@@ -74,11 +72,10 @@ public:
                const GroundMotion* motion, Constraint& out) const;
 
 private:
-  // Out: one of the two lists that find() fills.
-  template <int D, class Out>
-  void find_in(Range components, const ContactQuery& query, Out& out) const;
-  template <int D, class Out>
-  void find_among(Range components, const ContactQuery& query, Out& out) const;
+  template <int D>
+  void find_in(Range components, const ContactQuery& query, ConstraintSet& out) const;
+  template <int D>
+  void find_among(Range components, const ContactQuery& query, ConstraintSet& out) const;
   // Places of shapes among those that a material touches, as bits; all from the last one on share its bit.
   using ShapeBits = std::uint64_t;
   static constexpr ShapeBits all_shapes = ~ShapeBits{0};
@@ -86,9 +83,9 @@ private:
     return ShapeBits{1} << std::min(place, std::size_t{63});
   }
   // Appends the contacts of one feature with some shapes.
-  template <int D, class Out>
+  template <int D>
   void add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes, const ContactQuery& query,
-           Out& out) const;
+           ConstraintSet& out) const;
   // Writes a contact. \param end the shape at the end of the step
   template <int D>
   void fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,

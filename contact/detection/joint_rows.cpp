@@ -63,7 +63,7 @@ void JointRows::collect(Range OfComponent::*rows, F&& add) {
   }
 }
 
-void JointRows::find_limits(Index component, const ContactQuery& query, std::vector<Constraint>& out) const {
+void JointRows::find_limits(Index component, const ContactQuery& query, ConstraintSet& out) const {
   const Range limits = of_component_[component].limits;
   const JointView at{query.state, query.evaluation.rotation.data()};
   JointLimit limit;
@@ -75,17 +75,17 @@ void JointRows::find_limits(Index component, const ContactQuery& query, std::vec
                      !query.lasting->lasts(key_of(rows_[i]), gap, length * std::abs(limit.row.drift)))) {
       continue;
     }
-    Constraint& constraint = out.emplace_back();
+    Constraint& constraint = out.add();
     fill_limit(i, limit, constraint);
     if (!touches) constraint.allowed_approach = gap / query.lasting->step();
   }
 }
 
 void JointRows::find_friction(Index component, const StateView& state, const Evaluation& evaluation,
-                              std::vector<Constraint>& out) const {
+                              ConstraintSet& out) const {
   const Range friction = of_component_[component].friction;
   const JointView at{state, evaluation.rotation.data()};
-  for (Index i = friction.begin; i < friction.end; ++i) fill_friction(i, at, out.emplace_back());
+  for (Index i = friction.begin; i < friction.end; ++i) fill_friction(i, at, out.add());
 }
 
 void JointRows::append(Range rows, std::vector<ContactPair>& out) const {
@@ -106,7 +106,7 @@ void JointRows::constraint(Index number, const StateView& state, const Evaluatio
                            Constraint& out) const {
   const Row& row = rows_[number];
   const JointView at{state, evaluation.rotation.data()};
-  out = {};
+  out.clear();
   if (row.limit == none) return fill_friction(number, at, out);
   JointLimit limit;
   row.kind->limit(at, row.slot, row.limit, limit);
@@ -153,9 +153,7 @@ void JointRows::update_friction(const JointView& at, Constraint& constraint) con
 
 void JointRows::take(const JointRow& from, const JointBodies& bodies, Constraint& out) const {
   const BodySlots& slots = assembly_->layout()->bodies();
-  out.rows = 1;
   out.clear_bodies();
-  double* place = out.row(0);
   for (int b = 0; b < from.bodies; ++b) {
     const JointRow::Block& block = from.blocks[static_cast<std::size_t>(b)];
     const auto owner = std::find_if(bodies.begin(), bodies.end(),
@@ -165,6 +163,11 @@ void JointRows::take(const JointRow& from, const JointBodies& bodies, Constraint
                        ": a row has a body that is not among the ends; allowed: bodies that it binds");
     }
     out.add_body(*owner, block.v, block.columns);
+  }
+  out.start_rows(1);
+  double* place = out.row(0);
+  for (int b = 0; b < from.bodies; ++b) {
+    const JointRow::Block& block = from.blocks[static_cast<std::size_t>(b)];
     place = std::copy_n(block.jacobian.begin(), block.columns, place);
   }
   out.of_joint.length = length_of(from);

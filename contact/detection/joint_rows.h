@@ -6,7 +6,7 @@
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
 #include <carom/core/assembly.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/joint_kind.h>
 
@@ -43,11 +43,11 @@ public:
   }
 
   /// Appends the limits of one component that a query asks for.
-  void find_limits(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
+  void find_limits(Index component, const ContactQuery& query, ConstraintSet& out) const;
   /// Appends the friction in the joints of one component as constraints, whose `friction_bound` has the
   /// constant part of the bound. Sets nothing of the past.
   void find_friction(Index component, const StateView& state, const Evaluation& evaluation,
-                     std::vector<Constraint>& out) const;
+                     ConstraintSet& out) const;
   /// Appends all limits of one component.
   void append_limits(Index component, std::vector<ContactPair>& out) const;
   /// Appends all friction in its joints.

@@ -98,9 +98,9 @@ void fill_rows(const RowSide& a, const RowSide& b, const GapPoint& at, Constrain
   out.clear_bodies();
   out.add_body(a.body, a.v, a.columns);
   if (b.columns > 0) out.add_body(b.body, b.v, b.columns);
-  out.rows = 2;
+  out.start_rows(2);
   out.gap = at.gap;
-  double* row = out.jacobian.data();
+  double* row = out.row(0);
   if (a.columns == 3 && b.columns == 3) {
     write_row_of_two(a, b, n, point, row);
     write_row_of_two(a, b, t, point, row + 6);

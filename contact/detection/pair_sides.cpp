@@ -53,7 +53,7 @@ GapPoint gap_of(const PairSides& sides, Index feature) {
 }
 
 void write_contact(const PairSides& sides, const StateView& state, Constraint& out) {
-  out = {};  // it may have held a contact of other bodies
+  out.start_contact();
   out.key = sides.vertex_is_first ? ConstraintKey{sides.vertex, sides.surface}
                                   : ConstraintKey{sides.surface, sides.vertex};
   out.law = *sides.law;

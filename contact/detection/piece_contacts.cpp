@@ -86,12 +86,12 @@ ConstraintKey PieceContacts::key_of(const BodyOutline& a, const GroundOutline& b
   return b.is_hollow() ? ConstraintKey{a.vertex(gap.feature_a), b.surface()} : carom::key_of(a, b, gap);
 }
 
-void PieceContacts::find(Index component, const ContactQuery& query, std::vector<Constraint>& out) const {
+void PieceContacts::find(Index component, const ContactQuery& query, ConstraintSet& out) const {
   const Range bodies = assembly_->bodies_of({component, component + 1});
   for (Index body = bodies.begin; body < bodies.end; ++body) find_of(body, query, out);
 }
 
-void PieceContacts::find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const {
+void PieceContacts::find_of(Index body, const ContactQuery& query, ConstraintSet& out) const {
   const Range own = outlines_of(body);
   for (Index i = own.begin; i < own.end; ++i) {
     for (const Family& family : families_) find_in(family, outlines_.list()[i], query, out);
@@ -100,7 +100,7 @@ void PieceContacts::find_of(Index body, const ContactQuery& query, std::vector<C
 
 /// Looks up the pieces of a family near an outline.
 void PieceContacts::find_in(const Family& family, const BodyOutline& outline, const ContactQuery& query,
-                            std::vector<Constraint>& out) const {
+                            ConstraintSet& out) const {
   const BodySlot& body = assembly_->layout()->bodies()[outline.body];
   Search search{query, outline, {}, nullptr, {}, {}, query.margin, out.size()};
   if (family.shape != none) search.motion = shapes_.motion(family.shape, query.places);
@@ -138,7 +138,7 @@ void PieceContacts::find_in(const Family& family, const BodyOutline& outline, co
   for (const Index piece : family.unbounded) find_piece(piece, search, out);
 }
 
-void PieceContacts::find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const {
+void PieceContacts::find_piece(Index piece, const Search& search, ConstraintSet& out) const {
   const Index on_ground = pieces_.outline(piece);
   const BodyOutline& a = search.outline;
   const GroundOutline& b = pieces_.outlines()[on_ground];
@@ -188,25 +188,25 @@ std::optional<CornerMeeting> PieceContacts::meeting_near(const Search& search, I
 /// family \param most largest gap of what is closed [m] \param of_corners whether it is one of the two of
 /// corners that meet
 bool PieceContacts::add(const Search& search, Index on_ground, const GapPoint& local, double most,
-                        bool of_corners, std::vector<Constraint>& out) const {
+                        bool of_corners, ConstraintSet& out) const {
   const ContactQuery& query = search.query;
   const GapPoint gap = search.motion == nullptr ? local : in_space(search.frame, local);
   const bool touches = gap.gap <= most;
   const ConstraintKey key = key_of(search.outline, pieces_.outlines()[on_ground], gap);
   if (!touches && (query.lasting == nullptr || !query.lasting->contains(key))) return false;
   // Deep in the solid a vertex may be before two faces of a chain: it is out of the nearer one first.
-  const auto same = std::find_if(out.begin() + static_cast<std::ptrdiff_t>(search.first), out.end(),
+  const auto same = std::find_if(out.begin() + search.first, out.end(),
                                  [&](const Constraint& other) { return other.key == key; });
   if (same != out.end() && same->gap <= gap.gap) return true;
   const Index shape = pieces_.outlines()[on_ground].shape;
   const GroundAtEnd end = search.motion == nullptr ? GroundAtEnd{} : query.end_of(shapes_, shape);
-  Constraint contact;
+  SingleConstraint contact;
   fill(key, search.outline, on_ground, gap, query.state, search.motion, end, contact);
   if (!touches) {
     if (!query.lasting->lasts(key, gap.gap, std::abs(contact.drift[0]), of_corners)) return false;
     contact.allowed_approach = gap.gap / query.lasting->step();
   }
-  (same != out.end() ? *same : out.emplace_back()) = contact;
+  (same != out.end() ? *same : out.add()).take(contact);
   return true;
 }
 

@@ -17,7 +17,7 @@
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_sides.h>
 #include <carom/core/assembly.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/surface.h>
 
@@ -44,9 +44,9 @@ public:
   [[nodiscard]] const GroundPieces& pieces() const { return pieces_; }
 
   /// Appends the contacts of one component that a query asks for, ordered by body.
-  void find(Index component, const ContactQuery& query, std::vector<Constraint>& out) const;
+  void find(Index component, const ContactQuery& query, ConstraintSet& out) const;
   /// Likewise those of one body.
-  void find_of(Index body, const ContactQuery& query, std::vector<Constraint>& out) const;
+  void find_of(Index body, const ContactQuery& query, ConstraintSet& out) const;
   /// Appends all pairs of one component that may touch, ordered by body.
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
   /// The vertex and the outline that the key of a contact of these names; of other keys nothing.
@@ -85,12 +85,12 @@ private:
   [[nodiscard]] Range outlines_of(Index body) const { return {begin_[body], begin_[body + 1]}; }
   [[nodiscard]] Sides sides_of(const ContactPair& pair) const;
   void find_in(const Family& family, const BodyOutline& outline, const ContactQuery& query,
-               std::vector<Constraint>& out) const;
-  void find_piece(Index piece, const Search& search, std::vector<Constraint>& out) const;
+               ConstraintSet& out) const;
+  void find_piece(Index piece, const Search& search, ConstraintSet& out) const;
   [[nodiscard]] std::optional<CornerMeeting> meeting_near(const Search& search, Index ground,
                                                           const GapPoint& contact) const;
   bool add(const Search& search, Index ground, const GapPoint& local, double most, bool of_corners,
-           std::vector<Constraint>& out) const;
+           ConstraintSet& out) const;
   void fill(const ConstraintKey& key, const BodyOutline& a, Index ground, const GapPoint& gap,
             const StateView& state, const GroundMotion* motion, const GroundAtEnd& end,
             Constraint& out) const;

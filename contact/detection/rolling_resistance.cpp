@@ -26,12 +26,12 @@ double arm_of(const Constraint& contact) {
 
 }  // namespace
 
-Constraint rolling_resistance(const Constraint& contact, const GroundMotion* motion) {
+void write_rolling_resistance(const Constraint& contact, const GroundMotion* motion, Constraint& row) {
   constexpr int of_planar_body = 3;
-  Constraint row = contact;
-  row.type = ConstraintType::rolling;
-  row.rows = 1;
   const double arm = arm_of(contact);
+  static_cast<ConstraintHead&>(row) = contact;
+  row.type = ConstraintType::rolling;
+  row.start_rows(1);
   row.of_joint.length = arm;
   row.friction = contact.law.rolling_resistance / arm;
   row.law.tangential_restitution = contact.law.rolling_restitution;
@@ -41,15 +41,14 @@ Constraint rolling_resistance(const Constraint& contact, const GroundMotion* mot
     row.surface_velocity[0] = row.surface_velocity_after[0] = arm * motion->spin;
     row.drift[0] = -arm * motion->angular_acceleration;
   }
-  row.jacobian = {};
-  double* number = row.jacobian.data();
+  double* number = row.row(0);
+  std::fill_n(number, row.columns(), 0.0);
   double sign = arm;
   for (int b = 0; b < row.bodies; ++b, sign = -arm) {
     const int columns = row.blocks[static_cast<std::size_t>(b)].columns;
     if (columns == of_planar_body) number[columns - 1] = sign;
     number += columns;
   }
-  return row;
 }
 
 const GroundMotion* ground_motion_of(const Detector& detector, const Constraint& contact,

@@ -10,11 +10,12 @@
 
 namespace carom {
 
-/// Row of the rolling resistance of a contact, which it follows in every list: the spin of its first body
-/// less that of the second, times an arm (Constraint::OfJoint::length), so that the row has velocities in m/s
-/// and forces in N as its contact has. The ground stands still, or turns as `motion` says, null if it is at
-/// rest. Bodies without orientation have no spin.
-[[nodiscard]] CAROM_API Constraint rolling_resistance(const Constraint& contact, const GroundMotion* motion);
+/// Writes the row of the rolling resistance of a contact, which it follows in every list: the spin of its
+/// first body less that of the second, times an arm (Constraint::OfJoint::length), so that the row has
+/// velocities in m/s and forces in N as its contact has. The ground stands still, or turns as `motion` says,
+/// null if it is at rest. Bodies without orientation have no spin. `row` may be the contact itself.
+CAROM_API void write_rolling_resistance(const Constraint& contact, const GroundMotion* motion,
+                                        Constraint& row);
 /// Motion of the shape on ground that a contact touches; null if there is none or it is at rest.
 [[nodiscard]] CAROM_API const GroundMotion* ground_motion_of(const Detector& detector,
                                                              const Constraint& contact,

@@ -100,7 +100,7 @@ void ClockGroup::demand_start(const State& state) {
   parts_.motion.model().unknowns.gather(state, y);
   MotionSample& now = parts_.memory->instant.now;
   parts_.motion.sample(state.time, y.data(), Forces::without_contact, now);
-  Constraint contact;
+  SingleConstraint contact;
   const double tolerance = parts_.motion.model().options->gap_tolerance;
   for (std::size_t i = 0; i < parts_.motion.model().pairs.size(); ++i) {
     if (parts_.motion.model().pairs[i].rolling) continue;
@@ -130,7 +130,7 @@ void ClockGroup::close_known_contacts(const ContactModes& present) {
   active.clear();
   MotionSample& now = parts_.memory->instant.now;
   parts_.motion.sample(parts_.clock.now, parts_.y.data(), Forces::without_contact, now);
-  Constraint contact;
+  SingleConstraint contact;
   for (std::size_t i = 0; i < parts_.motion.model().pairs.size(); ++i) {
     parts_.motion.contact(i, now, contact);
     const auto known =
@@ -148,7 +148,7 @@ void ClockGroup::close_known_contacts(const ContactModes& present) {
     if (!closed.pair.rolling) continue;
     // Its mode is not written down: it follows from the relative spin.
     const double spin = contact.tangential_velocity(now.state.v.data());
-    const double noise = event_scales(parts_.motion, now, {&contact, 1}).noise_of(parts_.motion, contact);
+    const double noise = event_scales(parts_.motion, now, contact.alone()).noise_of(parts_.motion, contact);
     closed.mode = mode_by_sign(std::abs(spin) <= noise ? 0.0 : spin);
   }
 }

@@ -247,7 +247,7 @@ private:
   [[nodiscard]] double slip_there() {
     GroundPlaces places;
     model_.detector->place(trial_.time, places);
-    Constraint there;
+    SingleConstraint there;
     model_.detector->contact(pair_, trial_.view(), evaluation_, places, there);
     if (there.rows <= there.tangent_row()) return 0.0;
     const double slip = there.tangential_velocity(trial_.v.data());

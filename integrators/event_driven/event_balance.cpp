@@ -112,7 +112,7 @@ void EventBalance::finish() {
 
 void EventBalance::order_events() { events.order(order_); }
 
-EventRecord& EventBalance::record(EventKind kind, double time, const Constraint& contact,
+EventRecord& EventBalance::record(EventKind kind, double time, const ConstraintHead& contact,
                                   const Assembly& assembly) {
   ++counts[static_cast<std::size_t>(kind)];
   EventRecord& event = fresh.emplace_back();

@@ -98,7 +98,7 @@ struct CAROM_API EventBalance {
   /// Settles and orders what there is, and numbers the instants.
   void finish();
   /// Records an event, which the caller completes. \param contact without bodies: of no contact
-  EventRecord& record(EventKind kind, double time, const Constraint& contact, const Assembly& assembly);
+  EventRecord& record(EventKind kind, double time, const ConstraintHead& contact, const Assembly& assembly);
   /// Notes how bodies move before an impact, for its records.
   void note_before(const IslandProblem& problem, const StateView& state, const Assembly& assembly);
   /// Books the works of an impact and records it, an event for each contact. Returns the energy that it

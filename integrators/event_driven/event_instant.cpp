@@ -33,8 +33,8 @@ void EventInstant::update() {
   const double within = near();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (model.pairs[i].rolling) {
-      contacts[i] =
-          rolling_resistance(contacts[i - 1], motion_of(*model.detector, model.pairs[i], now.places));
+      write_rolling_resistance(contacts[i - 1], motion_of(*model.detector, model.pairs[i], now.places),
+                               contacts[i]);
       continue;
     }
     motion.contact_if_near(i, now, within, contacts[i]);

@@ -6,7 +6,7 @@
 #include <carom/contact/active_set.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_balance.h>
 #include <carom/integrators/event_driven/event_islands.h>
@@ -28,7 +28,7 @@ struct CAROM_API InstantMemory {
 
   MotionSample now;
   std::vector<double> acceleration_before;  ///< empty before a group with contact pairs
-  std::vector<Constraint> contacts;
+  ConstraintSet contacts;
   std::vector<ActiveContact> before;
   std::vector<Index> before_at;
   EventIslands islands;
@@ -47,7 +47,7 @@ struct CAROM_API EventInstant {
   MotionSample& now;    ///< of it, without contact
   /// Accelerations with the forces of contact up to the event; those without contact at a start.
   std::vector<double>& acceleration_before;
-  std::vector<Constraint>& contacts;   ///< of all pairs in it
+  ConstraintSet& contacts;             ///< of all pairs in it
   std::vector<ActiveContact>& before;  ///< contacts that were closed before the event
   std::vector<Index>& before_at;       ///< by pair: which of them, `none` if it was open
   EventIslands& islands;               ///< bodies that touch each other, found by find_islands()

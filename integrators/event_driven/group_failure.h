@@ -4,6 +4,7 @@
 /// Errors of a clock group: they name its times, the parts that keep it from going on, and the problem.
 
 #include <carom/contact/island_problem.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/run_error.h>
 #include <carom/integrators/event_driven/group_model.h>
@@ -55,7 +56,7 @@ public:
     return names;
   }
   /// Names of contacts.
-  [[nodiscard]] std::vector<std::string> names(const std::vector<Constraint>& contacts) const {
+  [[nodiscard]] std::vector<std::string> names(std::span<const Constraint> contacts) const {
     return names(contacts, [](const Constraint& contact) -> const Constraint& { return contact; });
   }
 

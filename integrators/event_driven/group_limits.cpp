@@ -150,13 +150,13 @@ std::vector<std::string> GroupLimits::parts_of(const Event& event, const MotionS
   if (event.guard == Guard::slip || event.guard == Guard::feature)
     return {failure_->name(closed[event.which].at)};
   if (event.guard == Guard::gap) {
-    Constraint contact;
+    SingleConstraint contact;
     motion_->contact(event.which, at, contact);
     return {failure_->name(contact)};
   }
   std::vector<std::string> names;
   if (event.guard == Guard::meeting) {
-    Constraint contact;
+    SingleConstraint contact;
     for (std::size_t i = 0; i < motion_->model().pairs.size(); ++i) {
       if (motion_->model().pairs[i].rolling) continue;
       motion_->contact(i, at, contact);

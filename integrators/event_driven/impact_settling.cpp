@@ -60,7 +60,7 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
     const Constraint& contact = at.contacts[i];
     if (contact.type == ConstraintType::rolling) continue;
     pile = pile || contact.bodies > 1;
-    Constraint& listed = touching_.emplace_back(contact);
+    Constraint& listed = touching_.add(contact);
     places_.push_back(i);
     listed.remove_restitution();
     const double sliding = contact.sliding_speed(at.velocities());

@@ -13,7 +13,7 @@
 #include <carom/contact/active_contact.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/slow_contacts.h>
@@ -64,7 +64,7 @@ private:
   [[nodiscard]] bool list_held(const EventInstant& at);
 
   IslandProblem problem_{{.factored_from = factored_constraints, .factored_to = most_exact_contacts}};
-  std::vector<Constraint> touching_;
+  ConstraintSet touching_;
   std::vector<Index> places_;  // their pairs
   std::vector<double> ahead_;  // velocities
   std::vector<ActiveContact> held_;

@@ -30,8 +30,7 @@ bool is_repeated(const Constraint& contact, const Constraint& other, double gap_
   }
   // Directions and levers both follow from the places of the same two corners.
   const double allowed = std::max(of_directions, roundings * gap_noise);
-  const double* const row = contact.jacobian.data();
-  return std::equal(row, row + contact.rows * contact.columns(), other.jacobian.data(),
+  return std::equal(contact.row(0), contact.row(contact.rows), other.row(0), other.row(other.rows),
                     [=](double one, double two) { return std::abs(one - two) <= allowed; });
 }
 
@@ -152,14 +151,14 @@ bool ImpactStage::stops(const IslandProblem& problem) {
 
 /// Lists the contacts of an impact.
 void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant& at) {
-  std::vector<Constraint>& touching = memory_->touching;
+  ConstraintSet& touching = memory_->touching;
   touching.clear();
   memory_->places.clear();
   for (const Index i : pairs) {
     if (!at.touches(i)) continue;
     const bool follows_force = at.motion.joints().depends_on_joint_force(at.contacts[i]);
     if (!takes_part(at.contacts[i], impacts_of_events, follows_force)) continue;
-    Constraint& contact = touching.emplace_back(at.contacts[i]);
+    Constraint& contact = touching.add(at.contacts[i]);
     memory_->places.push_back(i);
     contact.of_joint.friction_bound = 0.0;
     // Before the jump of a driver it did not approach: there is nothing to give back.
@@ -169,7 +168,7 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
 
 /// Leaves out contacts that are listed twice, with their rolling resistance: one contact is solved as such.
 void ImpactStage::leave_out_repeated(double gap_noise) {
-  std::vector<Constraint>& touching = memory_->touching;
+  ConstraintSet& touching = memory_->touching;
   std::size_t kept = 0;
   bool leaves_out = false;
   for (std::size_t i = 0; i < touching.size(); ++i) {
@@ -179,7 +178,7 @@ void ImpactStage::leave_out_repeated(double gap_noise) {
       leaves_out = std::find_if(touching.begin(), end, is_same) != end;
     }
     if (leaves_out) continue;
-    if (kept != i) touching[kept] = touching[i];
+    if (kept != i) touching[kept] = std::move(touching[i]);
     memory_->places[kept++] = memory_->places[i];
   }
   touching.resize(kept);
@@ -187,7 +186,7 @@ void ImpactStage::leave_out_repeated(double gap_noise) {
 }
 
 void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant& at) {
-  const std::vector<Constraint>& touching = memory_->touching;
+  const ConstraintSet& touching = memory_->touching;
   // Solved at each bound of friction in joints, which do not come to an end; or by impulses without bound.
   const std::string why = !problem.report().usable() ? std::string(to_string(problem.report().outcome))
                           : stops(problem)           ? unsettled_friction
@@ -199,7 +198,7 @@ void ImpactStage::fail_unsolved(const IslandProblem& problem, const EventInstant
 }
 
 /// Which contact approaches fastest, for messages: "... approaches at 0.1 m/s, ...".
-std::string ImpactStage::fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const {
+std::string ImpactStage::fastest_of(const ConstraintSet& contacts, const double* velocity) const {
   const auto slower = [&](const Constraint& a, const Constraint& b) {
     return a.normal_velocity(velocity) > b.normal_velocity(velocity);
   };
@@ -228,8 +227,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
     if (problem.map().impulse(c, 0) > 0.0) accumulation_.remember(at.time, contact.key);
   }
   if (gain == 0.0 || rules_of(at).energy_gain != EnergyGain::refuse) return;
-  failure_->fail(gain_is_refused("an impact", gain),
-                 failure_->names({problem.constraints().begin(), problem.constraints().end()}), &problem);
+  failure_->fail(gain_is_refused("an impact", gain), failure_->names(problem.constraints()), &problem);
 }
 
 /// Adds contacts that are about to close too.
@@ -243,10 +241,10 @@ void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant&
     const double speed = contact.normal_velocity(at.velocities());
     const double fall = contact.normal_acceleration(at.now.acceleration.data());
     if (!(fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit)) continue;
-    memory_->touching.push_back(contact);
+    memory_->touching.add(contact);
     memory_->places.push_back(i);
     if (i + 1 == at.contacts.size() || !at.motion.model().pairs[i + 1].rolling) continue;
-    memory_->touching.push_back(at.contacts[i + 1]);
+    memory_->touching.add(at.contacts[i + 1]);
     memory_->places.push_back(i + 1);
   }
 }

@@ -9,7 +9,7 @@
 #include <carom/contact/solvers/impact_rules.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/contact/strike.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/accumulation.h>
 #include <carom/integrators/event_driven/event_instant.h>
@@ -46,8 +46,8 @@ struct ImpactMemory {
 
   SolverChain& chain;
   ImpactProblems problems;
-  std::vector<Constraint> touching;  ///< constraints of the problem,
-  std::vector<Index> places;         ///< and their pairs, as long as all of these are in it
+  ConstraintSet touching;     ///< constraints of the problem,
+  std::vector<Index> places;  ///< and their pairs, as long as all of these are in it
   std::vector<ActiveContact> captured;
   std::vector<ImpactCounts> counts;      ///< by island
   std::vector<double> velocities_after;  ///< of the problem's rows, W P + b
@@ -97,7 +97,7 @@ private:
   // slowly are stopped too; the same without stopping; or those only that do not part.
   enum class Closing : std::uint8_t { with_sliding, all, pressed };
   void list_captured(Closing closing, std::span<const Index> pairs, EventInstant& at);
-  [[nodiscard]] std::string fastest_of(const std::vector<Constraint>& contacts, const double* velocity) const;
+  [[nodiscard]] std::string fastest_of(const ConstraintSet& contacts, const double* velocity) const;
   [[noreturn]] void fail_unsolved(const IslandProblem& problem, const EventInstant& at);
 
   const GroupFailure* failure_;

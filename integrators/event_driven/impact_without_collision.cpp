@@ -11,7 +11,7 @@ namespace carom {
 namespace {
 
 /// Gives all contacts the least of their coefficients of tangential restitution. False if they had one.
-bool share_restitution(std::vector<Constraint>& contacts) {
+bool share_restitution(ConstraintSet& contacts) {
   double least = std::numeric_limits<double>::infinity(), largest = 0.0;
   for (const Constraint& contact : contacts) {
     if (contact.rows < 2) continue;
@@ -73,7 +73,7 @@ void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates
     // Friction in joints bounds no contact force.
     if (candidates[i].at.has_dry_friction() && !candidates[i].rolls()) continue;
     taking_part_.push_back(i);
-    Constraint& contact = touching_.emplace_back(candidates[i].at);
+    Constraint& contact = touching_.add(candidates[i].at);
     if (speed == NormalSpeed::kept) continue;
     const double rounding = contact.normal_velocity(at.velocities());
     contact.surface_velocity[0] += rounding;

@@ -7,7 +7,7 @@
 #include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/event_instant.h>
 #include <carom/integrators/event_driven/impact_stage.h>
@@ -53,7 +53,7 @@ private:
   IslandProblem problem_;
   SolutionList solutions_;
   NewtonPolish polish_;
-  std::vector<Constraint> touching_;
+  ConstraintSet touching_;
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
   std::size_t best_ = 0;                  // of the solutions; their number if none
   std::vector<double> limit_, xi_;        // impulses and velocities of the limit

@@ -56,13 +56,12 @@ void ModeDecision::take_accelerations(const SmoothMotion& motion, const MotionSa
 void ModeDecision::list_contacts(std::span<Candidate> candidates) {
   contacts_.clear();
   taking_part_.clear();
-  contacts_.reserve(candidates.size());
   taking_part_.reserve(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i].mode = ContactMode::open;
     const bool rolling = candidates[i].rolls();
     if (rolling ? taking_part_.empty() || taking_part_.back() + 1 != i : slips_[i].open) continue;
-    Constraint& contact = contacts_.emplace_back(candidates[i].at);
+    Constraint& contact = contacts_.add(candidates[i].at);
     taking_part_.push_back(i);
     // In accelerations minus the drift stands for the velocity of the shape on ground.
     for (std::size_t row = 0; row < Constraint::max_rows; ++row) {

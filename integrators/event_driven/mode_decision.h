@@ -11,6 +11,7 @@
 #include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/solution_list.h>
 #include <carom/contact/solvers/solver_chain.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/modes_by_motion.h>
 #include <carom/integrators/event_driven/slip_directions.h>
@@ -79,7 +80,7 @@ private:
   IslandProblem problem_;
   SolutionList solutions_;
   NewtonPolish polish_;
-  std::vector<Constraint> contacts_;
+  ConstraintSet contacts_;
   std::vector<std::size_t> taking_part_;  // candidates by contact of the problem
   SlipDirections slips_;
   std::vector<double> zero_, acceleration_;

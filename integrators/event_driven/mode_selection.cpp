@@ -33,11 +33,10 @@ std::array<double, 2> acceleration_of_ground(const Constraint& contact, const Ev
 
 /// The contacts of candidates that nothing keeps. Ground that turns round stands still and presses all the
 /// same: its acceleration stands for its velocity then.
-std::vector<Constraint> unkept_contacts(std::span<const Candidate> candidates, const EventInstant& at) {
-  std::vector<Constraint> contacts;
-  contacts.reserve(candidates.size());
+ConstraintSet unkept_contacts(std::span<const Candidate> candidates, const EventInstant& at) {
+  ConstraintSet contacts;
   for (const Candidate& candidate : candidates) {
-    Constraint& contact = contacts.emplace_back(candidate.at);
+    Constraint& contact = contacts.add(candidate.at);
     const std::array<double, 2> acceleration = acceleration_of_ground(contact, at);
     for (std::size_t row = 0; row < acceleration.size(); ++row) {
       double& velocity = contact.surface_velocity_after[row];
@@ -165,7 +164,7 @@ Decision ModeSelection::decide_by_limit(Decision decision, EventInstant& at) {
     return at.motion.joints().depends_on_joint_force(candidate.at);
   });
   const std::string why = by_joints ? std::string("; ") + unsettled_friction : std::string{};
-  const std::vector<Constraint> unkept = unkept_contacts(memory_->candidates, at);
+  const ConstraintSet unkept = unkept_contacts(memory_->candidates, at);
   failure_->fail("the contact problem of the accelerations is not solved" + why, failure_->names(unkept),
                  &memory_->decision.problem(), unkept);
 }
@@ -251,7 +250,7 @@ Decision ModeSelection::decide_candidates(std::span<const Index> pairs, EventIns
 /// Fails where neither forces nor an impact without collision keep the candidates.
 void ModeSelection::fail_unkept(const EventInstant& at) const {
   const char* const what = "no forces keep the contact, and no impact without collision does";
-  const std::vector<Constraint> unkept = unkept_contacts(memory_->candidates, at);
+  const ConstraintSet unkept = unkept_contacts(memory_->candidates, at);
   failure_->fail(has_unbounded_force()
                      ? unbounded_->reason() + "; forces of contact grow without bound (Painleve); " + what
                      : what,

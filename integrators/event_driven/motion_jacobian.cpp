@@ -16,7 +16,7 @@ namespace carom {
 
 namespace {
 
-constexpr std::size_t most_columns = Constraint::max_columns;
+constexpr std::size_t most_columns = 9;  // of three bodies in the plane
 using OfContact = std::array<double, most_columns>;
 
 /// Row of a contact along which a force acts: a normal one with what follows from it, friction and the moment
@@ -26,7 +26,7 @@ OfContact direction(std::span<const ActiveContact> contacts, const ContactPivot:
   const bool tangent = force.tangent;
   OfContact result{};
   const double ratio = tangent ? 0.0 : -contact.slip_sign() * contact.friction;
-  for (std::size_t i = 0; i < most_columns; ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.at.columns()); ++i) {
     result[i] = contact.at.row(tangent ? contact.at.tangent_row() : 0)[i];
     if (ratio != 0.0) result[i] += ratio * contact.at.row(1)[i];
   }
@@ -179,7 +179,7 @@ void MotionJacobian::differentiate_joints(const MotionSample& sample, const Join
 MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, const ActiveContact& contact) {
   ContactChange change;
   change.count = columns_of(contact.at, change.columns);
-  Constraint moved;
+  SingleConstraint moved;
   const auto sample_at = [&](OfContact& load, std::array<double, 2>& rows) {
     if (contact.feature != none) {
       moved = contact.at;
@@ -247,7 +247,7 @@ void MotionJacobian::differentiate_friction_bound(const MotionSample& sample, co
   const std::size_t count = columns_of(contact.at, columns);
   const auto bound_at = [&](double& force, double value) {
     force = value;
-    Constraint moved = contact.at;
+    SingleConstraint moved = contact.at;
     bounds.take(forces.data(), 1.0);
     bounds.update(moved, sample.joint_view());
     return moved.of_joint.friction_bound;

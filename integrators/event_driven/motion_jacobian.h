@@ -33,7 +33,7 @@ private:
   // Changes of a contact's load, its forces as they are, and of the accelerations along its rows, those of
   // the bodies as they are.
   struct ContactChange {
-    static constexpr std::size_t most = Constraint::max_columns;
+    static constexpr std::size_t most = 9;  // columns of three bodies in the plane
     template <std::size_t N>
     using ByMove = std::array<std::array<double, N>, most>;  // by what is moved
 

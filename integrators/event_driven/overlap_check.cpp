@@ -14,10 +14,7 @@
 namespace carom {
 
 OverlapCheck::OverlapCheck(const Assembly& assembly, const Detector& detector, const EventDriven& options)
-    : assembly_(&assembly), detector_(&detector), options_(&options) {
-  constexpr std::size_t few = 8;
-  found_.reserve(few);
-}
+    : assembly_(&assembly), detector_(&detector), options_(&options) {}
 
 double allowed_overlap(const EventDriven& options, std::span<const double> places, double speed,
                        double time) {

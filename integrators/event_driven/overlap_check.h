@@ -8,7 +8,7 @@
 
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
@@ -63,7 +63,7 @@ private:
   const EventDriven* options_;
   GroundPlaces places_;
   BodyContactSearch search_;
-  std::vector<Constraint> found_;
+  ConstraintSet found_;
 };
 
 }  // namespace carom

@@ -20,7 +20,7 @@ namespace carom {
 struct Candidate {
   ContactPair pair;
   Index place = none;  ///< of the pair among those of the motion
-  Constraint at;
+  SingleConstraint at;
   double slip = 0.0;  ///< tangential velocity, 0 if it may stick [m/s]; or relative spin [rad/s]
   ContactMode present = ContactMode::open;  ///< before the decision
   ContactMode mode = ContactMode::open;     ///< decided

@@ -23,7 +23,7 @@ bool sample_gaps(const SmoothMotion& motion, std::span<const char> is_active, co
   out.gaps.resize(motion.model().pairs.size());
   const StateView state = at.view();
   bool finite = true;
-  Constraint contact;
+  SingleConstraint contact;
   for (std::size_t i = 0; i < motion.model().pairs.size(); ++i) {
     if (is_active[i] != 0 || motion.model().bound_of(i) != none) continue;
     motion.contact(i, at, contact);
@@ -47,7 +47,7 @@ void find_drifts(SmoothMotion& motion, std::span<const char> is_active, const Mo
   const GroupModel& model = motion.model();
   if (motion.active().list().empty() && motion.joints().rows().empty()) return;
   bool known = false;
-  Constraint contact;
+  SingleConstraint contact;
   for (std::size_t i = 0; i < out.gaps.size(); ++i) {
     if (is_active[i] != 0 || !(out.gaps[i].value < 0.0)) continue;
     const Index bound = model.bound_of(i);

@@ -61,7 +61,7 @@ double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& star
   std::optional<ContactPair> pair;
   if (contact.type == ConstraintType::contact) pair = pair_of(look_.detector(), contact.key);
   if (!pair) return -std::numeric_limits<double>::infinity();
-  Constraint at;
+  SingleConstraint at;
   look_.contact(*pair, start.view(), at);
   return at.gap;
 }
@@ -73,18 +73,18 @@ ClosingSearch::Closing ClosingSearch::look(const State& start, const State& end,
   const double* const v = end.v.data();
   // A contact with gap g < 0 has closed, even where it recedes again, past the middle of the other body, if
   // it came fast: slow contacts that dip by little are not worth a part.
-  std::erase_if(at_end_, [&](const Constraint& contact) {
+  at_end_.remove_if([&](const Constraint& contact) {
     const bool closes = contact.normal_velocity(v) < 0.0 || contact.gap < -rounding_;
     if (!closes || acts(contact, acted)) return true;
     if (!is_given_up(contact.key)) return false;
-    if (contact.gap < -rounding_) left_out_.push_back(contact);
+    if (contact.gap < -rounding_) left_out_.add(contact);
     return true;
   });
   Closing first;
   if (at_end_.empty() && left_out_.empty()) return first;
   // As far as contacts may have come since the start.
   double reach = 0.0;
-  for (const std::vector<Constraint>* const list : {&at_end_, &left_out_}) {
+  for (const ConstraintSet* const list : {&at_end_, &left_out_}) {
     for (const Constraint& contact : *list) {
       constexpr double caution = 2.0;
       const double speed = std::max(contact.speed(0, v), contact.speed(0, start.v.data()));

@@ -9,6 +9,7 @@
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/function_ref.h>
 #include <carom/core/state.h>
@@ -86,7 +87,7 @@ private:
   double rounding_;
   CaptureRule capture_;
   bool given_up_ = false;  // any_given_up()
-  std::vector<Constraint> at_start_, at_end_, left_out_;
+  ConstraintSet at_start_, at_end_, left_out_;
   std::vector<Count> closed_;
   double near_ = 0.0;  // gaps that are looked at, for the parts of one search [m]
 };

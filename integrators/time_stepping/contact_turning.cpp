@@ -19,14 +19,14 @@ bool is_before(const Constraint& a, const Constraint& b) {
 }
 
 /// The constraint of a key and type in a list that is ordered by these; null if there is none.
-const Constraint* find_in(const std::vector<Constraint>& list, const Constraint& contact) {
+const Constraint* find_in(const ConstraintSet& list, const Constraint& contact) {
   const auto at = std::lower_bound(list.begin(), list.end(), contact, is_before);
   return at == list.end() || is_before(contact, *at) ? nullptr : &*at;
 }
 
 /// Brings a constraint to another one, but for what the sweeps make of it.
 void take(const Constraint& from, Constraint& to) {
-  to.jacobian = from.jacobian;
+  to.take_rows(from);
   to.surface_velocity = from.surface_velocity;
   to.surface_velocity_after = from.surface_velocity_after;
   to.of_joint.friction_bound = from.of_joint.friction_bound;
@@ -57,7 +57,8 @@ void ContactTurning::begin(std::span<const StepIsland> islands, double step, boo
       if (!answered && (contact.type != ConstraintType::contact || !contact.turns(step, negligible_)))
         continue;
       if (alone && may_be_followed(contact)) continue;
-      turned_.push_back({contact, contact, contact.surface_velocity_after});
+      turned_.push_back(
+          {SingleConstraint(contact), SingleConstraint(contact), contact.surface_velocity_after});
     }
   }
   std::sort(turned_.begin(), turned_.end(),
@@ -132,7 +133,7 @@ double ContactTurning::reach(const StepInput& in) const {
   return more * largest;
 }
 
-void ContactTurning::find_at(const State& state, double margin, std::vector<Constraint>& out) {
+void ContactTurning::find_at(const State& state, double margin, ConstraintSet& out) {
   look_.find(state.view(), margin, out, nullptr, &lasting_);
   std::sort(out.begin(), out.end(), is_before);
 }
@@ -176,7 +177,7 @@ void ContactTurning::restore(const StepIsland& island) const {
 /// Brings a constraint to the path. True if its rows turn by more than rounding. \param v0,v1 velocities at
 /// both ends \param trial with the rotations of mechanisms halfway and at the end
 bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, const StepTrial& trial) const {
-  Constraint middle = turned.start, end = turned.start;
+  SingleConstraint middle = turned.start, end = turned.start;
   if (turned.start.has_dry_friction()) {
     const JointRows& joints = look_.detector().joints();
     joints.update_friction({middle_.view(), trial.at_midpoint.rotation.data()}, middle);
@@ -189,12 +190,12 @@ bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, co
     const Constraint* const on_way = become_of(turned.start, *halfway, found_.middle, same_place);
     const Constraint* const at_end = become_of(turned.start, *last, found_.end, same_place);
     if (on_way == nullptr || at_end == nullptr) return false;  // it has come to another feature
-    middle.jacobian = on_way->jacobian;
-    end.jacobian = at_end->jacobian;
+    middle.take_rows(*on_way);
+    end.take_rows(*at_end);
     end.surface_velocity = at_end->surface_velocity;
   }
   bool turns = false;
-  turned.now.jacobian = middle.jacobian;
+  turned.now.take_rows(middle);
   turned.ground_after = end.surface_velocity;
   for (int i = 0; i < middle.rows; ++i) {
     const auto row = static_cast<std::size_t>(i);

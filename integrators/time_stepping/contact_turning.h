@@ -18,6 +18,7 @@
 #include <carom/contact/detection/lasting_contacts.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 #include <carom/integrators/time_stepping/step_input.h>
@@ -61,7 +62,7 @@ private:
   // A constraint at the start of the step, as it is turned, and the velocities of the ground that it touches
   // at the end.
   struct Turned {
-    Constraint start, now;
+    SingleConstraint start, now;
     std::array<double, std::size_t{Constraint::max_rows}> ground_after{};
   };
   [[nodiscard]] bool may_be_followed(const Constraint& contact) const;
@@ -71,7 +72,7 @@ private:
   [[nodiscard]] bool turn(Turned& turned, const double* v0, const double* v1, const StepTrial& at) const;
   [[nodiscard]] bool has_converged(const StepTrial& trial, double residual);
   [[nodiscard]] double reach(const StepInput& in) const;
-  void find_at(const State& state, double margin, std::vector<Constraint>& out);
+  void find_at(const State& state, double margin, ConstraintSet& out);
 
   ContactLook look_;
   LastingContacts lasting_;  // those that turn
@@ -82,7 +83,7 @@ private:
   std::vector<Index> shared_;      // bodies with contacts of two, ascending
   std::vector<Index> mechanisms_;  // components whose joints answer contact
   struct {
-    std::vector<Constraint> middle, end;
+    ConstraintSet middle, end;
   } found_;                      // halfway and at the end, by key and type
   std::vector<double> lengths_;  // Assembly::length_scales()
   std::vector<double> last_;     // velocities at the end of the trial before

@@ -66,7 +66,7 @@ std::span<const FlightClosing> FlightClosings::find(const LocatedBody& at, const
 /// Adds contacts that are not open any more and were not known. At the end of a flight those that touch and
 /// approach too; on the way only what goes deeper: what was hit before may still be leaving.
 void FlightClosings::add(const LocatedBody& at, const MotionPhase& flight, double share,
-                         const std::vector<Constraint>& found) {
+                         const ConstraintSet& found) {
   const bool at_end = share == flight.end;
   const double* const v = at.trial.end.v.data();
   for (const Constraint& contact : found) {
@@ -103,7 +103,7 @@ void FlightClosings::locate(const LocatedBody& at, const MotionPhase& flight, st
     if (jumps && closed - open <= together) break;
     share = next;
     FlightLook::go(at, flight, share);
-    const std::vector<Constraint>& near = look.find(at, share, margin, false);
+    const ConstraintSet& near = look.find(at, share, margin, false);
     add(at, flight, share, near);
     const auto is_it = [&](const Constraint& contact) { return contact.key == closing.key; };
     const auto contact = std::find_if(near.begin(), near.end(), is_it);

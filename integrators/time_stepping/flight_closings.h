@@ -6,7 +6,7 @@
 /// A body may come to a face and leave it again within a flight: at its end another one is closed. Where a
 /// look on the way finds more that is closed, that is looked for too.
 
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/flight_look.h>
 #include <carom/integrators/time_stepping/motion_phase.h>
@@ -36,8 +36,7 @@ public:
                                                     std::span<const ConstraintKey> known, FlightLook& look);
 
 private:
-  void add(const LocatedBody& at, const MotionPhase& flight, double share,
-           const std::vector<Constraint>& found);
+  void add(const LocatedBody& at, const MotionPhase& flight, double share, const ConstraintSet& found);
   void locate(const LocatedBody& at, const MotionPhase& flight, std::size_t which, FlightLook& look);
 
   std::vector<ConstraintKey> known_;

@@ -35,13 +35,12 @@ void FlightLook::rotate(const LocatedBody& at) {
                     at.trial.at_end.rotation.data() + at.slot.rotation);
 }
 
-const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double share, double margin,
-                                                bool to_end) {
+const ConstraintSet& FlightLook::find(const LocatedBody& at, double share, double margin, bool to_end) {
   return find(at, share, margin, to_end, nullptr);
 }
 
-const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double share, double margin,
-                                                bool to_end, const LastingContacts* lasting) {
+const ConstraintSet& FlightLook::find(const LocatedBody& at, double share, double margin, bool to_end,
+                                      const LastingContacts* lasting) {
   StateView view = at.trial.end.view();
   view.time = share < 1.0 ? at.in.start.time + share * at.in.step : at.in.end_time;
   if (at.detector.needs_rotations()) rotate(at);
@@ -53,8 +52,8 @@ const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double sh
   return found_;
 }
 
-const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double share,
-                                                std::span<const ConstraintKey> wanted, bool to_end) {
+const ConstraintSet& FlightLook::find(const LocatedBody& at, double share,
+                                      std::span<const ConstraintKey> wanted, bool to_end) {
   constexpr double caution = 4.0;  // what stands out from the body, and ground, move too
   double way = 0.0;
   for (Index i = 0; i < at.slot.v_size; ++i) {
@@ -73,12 +72,12 @@ const std::vector<Constraint>& FlightLook::find(const LocatedBody& at, double sh
   return find(at, share, std::numeric_limits<double>::infinity(), to_end, &lasting_);
 }
 
-void FlightLook::take(std::span<const ConstraintKey> wanted, std::vector<Constraint>& out) const {
+void FlightLook::take(std::span<const ConstraintKey> wanted, ConstraintSet& out) const {
   out.clear();
   for (const ConstraintKey& key : wanted) {
     const auto found = std::find_if(found_.begin(), found_.end(),
                                     [&](const Constraint& contact) { return contact.key == key; });
-    if (found != found_.end()) out.push_back(*found);
+    if (found != found_.end()) out.add(*found);
   }
 }
 

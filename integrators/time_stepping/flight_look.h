@@ -5,7 +5,7 @@
 
 #include <carom/contact/detection/ground_shapes.h>
 #include <carom/contact/detection/lasting_contacts.h>
-#include <carom/core/constraint.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/motion_phase.h>
 
@@ -25,22 +25,22 @@ public:
 
   /// Contacts of the body where it is whose gap is at most `margin` [m].
   /// \param to_end time passes up to the end of the step; else none
-  const std::vector<Constraint>& find(const LocatedBody& at, double share, double margin, bool to_end);
+  const ConstraintSet& find(const LocatedBody& at, double share, double margin, bool to_end);
   /// Some of them, however far they are open, and others that are near: `wanted` closed within the step, so
   /// that the body is hardly farther from them than it moves in one; where it is, all are found.
-  const std::vector<Constraint>& find(const LocatedBody& at, double share,
-                                      std::span<const ConstraintKey> wanted, bool to_end);
+  const ConstraintSet& find(const LocatedBody& at, double share, std::span<const ConstraintKey> wanted,
+                            bool to_end);
   /// Makes a list of some of those that were found last, in the order in which they are wanted: the order in
   /// which they are found follows gaps, which may be the same but for rounding.
-  void take(std::span<const ConstraintKey> wanted, std::vector<Constraint>& out) const;
+  void take(std::span<const ConstraintKey> wanted, ConstraintSet& out) const;
 
 private:
-  const std::vector<Constraint>& find(const LocatedBody& at, double share, double margin, bool to_end,
-                                      const LastingContacts* lasting);
+  const ConstraintSet& find(const LocatedBody& at, double share, double margin, bool to_end,
+                            const LastingContacts* lasting);
 
   LastingContacts lasting_;  // those that are wanted
   GroundPlaces places_, places_at_end_;
-  std::vector<Constraint> found_;
+  ConstraintSet found_;
 };
 
 }  // namespace carom

@@ -191,7 +191,7 @@ void LocatedImpacts::take_up(const StepInput& in, Index body, StepTrial& trial) 
   island_.own.clear();
   for (const auto& [of, contact] : of(body)) {
     if (island_.contacts[contact].bodies > 1) return;
-    island_.own.push_back(island_.contacts[contact]);
+    island_.own.add(island_.contacts[contact]);
   }
   if (in_use_ == motions_.size()) motions_.emplace_back().chain().set_budget(budget_);
   trial.expect_impulses();

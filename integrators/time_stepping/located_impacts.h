@@ -6,6 +6,7 @@
 
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/jump_search.h>
@@ -101,9 +102,9 @@ private:
     std::span<const Constraint> contacts;
     std::vector<OfBody> of_bodies;  // of these, ascending
     std::size_t next = 0;           // behind those of the body asked for last: bodies come in order
-    std::vector<Constraint> own;    // of one body
+    ConstraintSet own;              // of one body
   } island_;                        // at hand
-  std::vector<Constraint> found_;
+  ConstraintSet found_;
 };
 
 }  // namespace carom

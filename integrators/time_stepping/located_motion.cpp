@@ -14,7 +14,7 @@ namespace carom {
 namespace {
 
 /// True if two lists are of the same contacts.
-bool are_same(const std::vector<Constraint>& a, const std::vector<Constraint>& b) {
+bool are_same(const ConstraintSet& a, const ConstraintSet& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const Constraint& one, const Constraint& other) { return one.key == other.key; });
 }
@@ -34,7 +34,7 @@ void write(const std::array<double, N>& from, Index first, Index count, std::vec
 void LocatedMotion::begin(Index body, std::span<const Constraint> contacts, bool struck) {
   body_ = body;
   struck_ = struck;
-  start_.assign(contacts.begin(), contacts.end());
+  start_.assign(contacts);
   used_ = 0;
   hit_ = 2.0;
   failed_ = nullptr;
@@ -88,7 +88,7 @@ bool LocatedMotion::move(const LocatedBody& at) {
     parted_.clear();
     if (hit > now) {
       // It begins with contacts as they have turned on the longer way, which is nearly its own.
-      for (std::vector<Constraint>* const list : {&flight.constraints, &of_flight_.begin}) {
+      for (ConstraintSet* const list : {&flight.constraints, &of_flight_.begin}) {
         for (Constraint& contact : *list) contact.shorten((hit - now) / (1.0 - now));
       }
       flight.end = hit;
@@ -229,7 +229,7 @@ bool LocatedMotion::fly_once(const LocatedBody& at, MotionPhase& flight) {
 
 /// Lists what the contacts of a flight have become on its way, as far as they are found.
 void LocatedMotion::take_turned(std::span<const Constraint> found, double same_place,
-                                std::vector<Constraint>& out) const {
+                                ConstraintSet& out) const {
   out.clear();
   for (const Constraint& begin : of_flight_.begin) {
     const auto named = std::find_if(found.begin(), found.end(),
@@ -237,8 +237,7 @@ void LocatedMotion::take_turned(std::span<const Constraint> found, double same_p
     if (named == found.end()) continue;
     const Constraint* const now = become_of(begin, *named, found, same_place);
     if (now == nullptr) continue;
-    out.push_back(*now);
-    out.back().key = begin.key;
+    out.add(*now).key = begin.key;
   }
 }
 
@@ -249,7 +248,7 @@ bool LocatedMotion::turn(const LocatedBody& at, MotionPhase& flight) {
   const double* const v = at.trial.end.v.data();
   turned_.clear();
   for (const Constraint& contact : flight.constraints) turned_.push_back(contact.key);
-  const auto find = [&](double share, std::vector<Constraint>& out) {
+  const auto find = [&](double share, ConstraintSet& out) {
     FlightLook::go(at, flight, share);
     take_turned(look_.find(at, share, turned_, false), at.detector.pieces().pieces().lengths().corner, out);
   };
@@ -263,7 +262,7 @@ bool LocatedMotion::turn(const LocatedBody& at, MotionPhase& flight) {
   std::swap(of_flight_.end, of_flight_.next_end);
   const std::size_t count = flight.constraints.size();
   for (std::size_t c = 0; c < count; ++c) {
-    flight.constraints[c].jacobian = of_flight_.middle[c].jacobian;
+    flight.constraints[c].take_rows(of_flight_.middle[c]);
     for (int i = 0; i < of_flight_.begin[c].rows; ++i) {
       const auto row = static_cast<std::size_t>(i);
       flight.constraints[c].surface_velocity_after[row] =
@@ -316,7 +315,7 @@ bool LocatedMotion::strike(const LocatedBody& at, double share, bool fast) {
   MotionPhase& hit = add_phase(at, share, share);
   look_.find(at, share, closed_, false);
   look_.take(closed_, hit.constraints);
-  std::erase_if(hit.constraints, [&](const Constraint& contact) {
+  hit.constraints.remove_if([&](const Constraint& contact) {
     return contact.gap > at.rules.gap &&
            std::find(parted_.begin(), parted_.end(), contact.key) != parted_.end();
   });

@@ -8,6 +8,7 @@
 /// full.
 
 #include <carom/contact/island_problem.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/flight_closings.h>
 #include <carom/integrators/time_stepping/flight_look.h>
@@ -58,7 +59,7 @@ private:
   [[nodiscard]] bool fly_along_begin(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool fly_once(const LocatedBody& at, MotionPhase& flight);
   [[nodiscard]] bool solve(const LocatedBody& at, MotionPhase& phase);
-  void take_turned(std::span<const Constraint> found, double same_place, std::vector<Constraint>& out) const;
+  void take_turned(std::span<const Constraint> found, double same_place, ConstraintSet& out) const;
   [[nodiscard]] bool turn(const LocatedBody& at, MotionPhase& flight);
   void book_turning(MotionPhase& flight) const;
   [[nodiscard]] bool gains(const LocatedBody& at, const MotionPhase& flight) const;
@@ -68,9 +69,9 @@ private:
   bool struck_ = false;
   FlightLook look_;
   FlightClosings closings_;
-  std::vector<Constraint> start_;
+  ConstraintSet start_;
   struct {
-    std::vector<Constraint> begin, middle, end, next_middle, next_end;
+    ConstraintSet begin, middle, end, next_middle, next_end;
   } of_flight_;                        // its contacts then
   std::vector<ConstraintKey> closed_;  // contacts that take part in what comes next
   std::vector<ConstraintKey> turned_;  // those of a flight

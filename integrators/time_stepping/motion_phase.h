@@ -7,6 +7,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/impact_rules.h>
 #include <carom/core/body_kind.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/capture_rule.h>
 #include <carom/integrators/time_stepping/step_input.h>
@@ -57,11 +58,11 @@ struct MotionPhase {
   double hit = 2.0;               ///< share of the first impact before it; above 1: none
   /// Work of contacts by the turning of their directions, an error of the step [J].
   double turning_work = 0.0;
-  bool cut = false;                     ///< an impact beyond those that are allowed: it does not rebound
-  std::array<double, 7> q{};            ///< coordinates at its begin
-  std::array<double, 6> v0{}, v1{};     ///< velocities at its begin, at its end
-  std::vector<Constraint> constraints;  ///< contacts that take part
-  IslandProblem problem;                ///< theirs, if there are any
+  bool cut = false;                  ///< an impact beyond those that are allowed: it does not rebound
+  std::array<double, 7> q{};         ///< coordinates at its begin
+  std::array<double, 6> v0{}, v1{};  ///< velocities at its begin, at its end
+  ConstraintSet constraints;         ///< contacts that take part
+  IslandProblem problem;             ///< theirs, if there are any
 
   /// True of an impact.
   [[nodiscard]] bool is_impact() const { return begin == end; }

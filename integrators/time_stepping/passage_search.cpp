@@ -184,7 +184,7 @@ void PassageSearch::look(const State& start, double share) {
     }
   }
   look_.find(at_.view(), margin_, contacts_, &places_at_end_);
-  std::erase_if(contacts_, [&](const Constraint& contact) { return allowed(contact) == infinite; });
+  contacts_.remove_if([&](const Constraint& contact) { return allowed(contact) == infinite; });
 }
 
 /// Keeps the depths of pairs that overlap at the start, each with its deepest contact first.

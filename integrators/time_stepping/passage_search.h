@@ -18,6 +18,7 @@
 #include <carom/contact/detection/contact_look.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
 #include <carom/integrators/run/time_stepping.h>
@@ -95,7 +96,7 @@ private:
   State at_;
   std::vector<State> way_;  // corners of the way
   GroundPlaces places_at_end_;
-  std::vector<Constraint> contacts_;
+  ConstraintSet contacts_;
   std::vector<double> displacement_;               // over all velocities, of the whole step
   std::vector<std::pair<Pair, double>> at_start_;  // pairs that overlap then, by how much [m]
   double step_ = 0.0;                              // [s]

@@ -12,6 +12,7 @@
 #include <carom/contact/detection/joint_rows.h>
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/export.h>
 #include <carom/core/state.h>
@@ -51,7 +52,7 @@ private:
   JointRows joints_;
   std::vector<double> lengths_;  // that weight velocities
   Evaluation at_start_;
-  std::vector<Constraint> friction_;
+  ConstraintSet friction_;
 };
 
 }  // namespace carom

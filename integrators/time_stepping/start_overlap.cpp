@@ -22,7 +22,7 @@ namespace {
 }
 
 void demand_depth(const Assembly& assembly, const Detector& detector, const State& state, double largest) {
-  std::vector<Constraint> contacts;
+  ConstraintSet contacts;
   ContactLook(assembly, detector).find(state.view(), 0.0, contacts);
   const auto deepest =
       std::min_element(contacts.begin(), contacts.end(),

@@ -154,8 +154,7 @@ bool StepConstraints::is_freed(const StepInput& in, bool of_corners, Constraint&
 }
 
 /// Takes those that do not act out of a list, from its place `first` on.
-void StepConstraints::free_parting(const StepInput& in, std::size_t first,
-                                   std::vector<Constraint>& out) const {
+void StepConstraints::free_parting(const StepInput& in, std::size_t first, ConstraintSet& out) const {
   const double same_place = detector_.pieces().pieces().lengths().corner;
   std::size_t kept = first;
   bool meets_next = false;  // two contacts of corners that meet follow one another
@@ -163,14 +162,14 @@ void StepConstraints::free_parting(const StepInput& in, std::size_t first,
     const bool met = meets_next;
     meets_next = i + 1 < out.size() && are_of_corners(out[i], out[i + 1], same_place);
     if (is_freed(in, met || meets_next, out[i])) continue;
-    if (kept < i) out[kept] = out[i];
+    if (kept < i) out[kept] = std::move(out[i]);
     ++kept;
   }
   out.resize(kept);
 }
 
 void StepConstraints::find_in(const StepInput& in, Range components, const StepTrial& trial,
-                              std::vector<Constraint>& out) {
+                              ConstraintSet& out) {
   const std::size_t first = out.size();
   const StateView start = in.start.view();
   detector_.find(components, query(in, trial), out);
@@ -184,7 +183,7 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
                   [&](Constraint& at) { at.of_joint.friction_bound *= in.step; });
   }
   if (out.size() == first) return;
-  const std::span<Constraint> found(out.data() + first, out.size() - first);
+  const std::span<Constraint> found = std::span(out).subspan(first);
   take_sticking(found);
   // Friction in joints comes last.
   if (found.back().has_dry_friction())
@@ -193,20 +192,20 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
 }
 
 /// Rolling resistance behind each contact that has some, of the constraints from `first` on.
-void StepConstraints::add_rolling(std::size_t first, std::vector<Constraint>& out) {
-  with_rolling_.assign(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(first));
+void StepConstraints::add_rolling(std::size_t first, ConstraintSet& out) {
+  with_rolling_.assign(std::span(out).first(first));
   for (std::size_t i = first; i < out.size(); ++i) {
-    with_rolling_.push_back(out[i]);
+    with_rolling_.add(out[i]);
     if (out[i].type == ConstraintType::contact && out[i].law.resists_rolling()) {
-      with_rolling_.push_back(rolling_resistance(out[i], ground_motion_of(detector_, out[i], ground_.start)));
-      with_rolling_.back().drift = {};  // steps take the spins at both ends
+      Constraint& rolling = with_rolling_.add();
+      write_rolling_resistance(out[i], ground_motion_of(detector_, out[i], ground_.start), rolling);
+      rolling.drift = {};  // steps take the spins at both ends
       const GroundMotion* const after = ground_motion_of(detector_, out[i], ground_.end);
       if (after == nullptr) continue;
-      Constraint& rolling = with_rolling_.back();
       rolling.surface_velocity_after[0] = rolling.of_joint.length * after->spin;
     }
   }
-  out.swap(with_rolling_);
+  std::swap(out, with_rolling_);
 }
 
 void StepConstraints::find(const StepInput& in, std::span<const Range> batches, const StepTrial& trial,
@@ -226,17 +225,15 @@ void StepConstraints::find(const StepInput& in, std::span<const Range> batches, 
 
 std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range components,
                                                  const StepTrial& trial) {
-  if (rules_.plain) {
-    plain_.clear();
-    detector_.ground().find(components, query(in, trial), plain_);
-    const std::span<Constraint> found = plain_.all();
-    if (rules_.parting == Parting::acts) return found;
-    bool all_act = true;
-    for (Constraint& contact : found) all_act = !is_freed(in, false, contact) && all_act;
-    if (all_act) return found;
-  }
   single_.clear();
-  find_in(in, components, trial, single_);
+  if (!rules_.plain) {
+    find_in(in, components, trial, single_);
+    return single_;
+  }
+  detector_.ground().find(components, query(in, trial), single_);
+  if (rules_.parting == Parting::is_free) {
+    single_.remove_if([&](Constraint& contact) { return is_freed(in, false, contact); });
+  }
   return single_;
 }
 
@@ -249,7 +246,7 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
   std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
   if (rules_.parting == Parting::is_free) {
     std::erase_if(search_.touching, [&](const BodyTouch& touch) {
-      Constraint written;
+      SingleConstraint written;
       bodies.write(touch, in.start.view(), written);
       return is_freed(in, touch.of_corners, written);
     });
@@ -268,15 +265,15 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     Constraint& out = constraints_[k];
     fetch_ahead(std::span(constraints_), k + 4);
     if (source >= touching.size()) {
-      out = single_[source - touching.size()];
+      out.take(single_[source - touching.size()]);
       continue;
     }
     if (std::exchange(last, source) == source) {
-      out = rolling_resistance(constraints_[k - 1], nullptr);
+      write_rolling_resistance(constraints_[k - 1], nullptr, out);
       continue;
     }
     if (rules_.drifts) {
-      out = {};
+      out.start_contact();
       bodies.write(touching[source], in.start.view(), out);
     } else {
       bodies.write_rows(touching[source], search_, in.start.view(), out);

@@ -6,7 +6,8 @@
 /// components.
 
 #include <carom/contact/detection/detector.h>
-#include <carom/contact/detection/kept_list.h>
+#include <carom/core/constraint_set.h>
+
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/integrators/run/time_stepping.h>
@@ -73,20 +74,20 @@ public:
   [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
                                                 const StepTrial& trial);
   /// Memory for the constraints of an island before its first iteration, which changes them.
-  [[nodiscard]] std::vector<Constraint>& kept() { return kept_; }
+  [[nodiscard]] ConstraintSet& kept() { return kept_; }
 
 private:
   void remember(const StepInput& in, double last_step);
-  void find_in(const StepInput& in, Range components, const StepTrial& trial, std::vector<Constraint>& out);
+  void find_in(const StepInput& in, Range components, const StepTrial& trial, ConstraintSet& out);
   [[nodiscard]] bool goes_in_parts(Range batch) const {
     return rules_.by_part && batch.size() > rules_.part_size;
   }
   [[nodiscard]] bool find_joining(const StepInput& in, std::span<const Range> batches,
                                   const StepTrial& trial);
   [[nodiscard]] bool is_freed(const StepInput& in, bool of_corners, Constraint& constraint) const;
-  void free_parting(const StepInput& in, std::size_t first, std::vector<Constraint>& out) const;
+  void free_parting(const StepInput& in, std::size_t first, ConstraintSet& out) const;
   void merge(const StepInput& in, std::span<const BodyTouch> touching);
-  void add_rolling(std::size_t first, std::vector<Constraint>& out);
+  void add_rolling(std::size_t first, ConstraintSet& out);
   void take_sticking(std::span<Constraint> found) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;
 
@@ -116,9 +117,8 @@ private:
   LastingContacts lasting_;              // contacts of the last step that turning may have opened
   std::vector<ConstraintKey> sticking_;  // in the last step, ordered; where static friction asks
   BodyContactSearch search_;
-  std::vector<Constraint> constraints_, kept_, with_rolling_;
-  std::vector<Constraint> single_;   // those that join no components, or of a part of a batch
-  KeptList<Constraint> plain_;       // of a part of a batch, where all are plain
+  ConstraintSet constraints_, kept_, with_rolling_;
+  ConstraintSet single_;             // those that join no components, or of a part of a batch
   std::vector<JoinedNodes> joined_;  // components of all constraints, before they are written
   std::vector<Index> sources_;  // of the same: place among those of two bodies, or behind them in single_
   StepIslands islands_;

@@ -49,7 +49,7 @@ bool StepImpacts::resolve(const StepInput& in) {
     contacts_.clear();
     for (const Constraint& constraint : island.constraints) {
       if (!takes_part(constraint, impacts_of_steps, false)) continue;
-      Constraint& contact = contacts_.emplace_back(constraint);
+      Constraint& contact = contacts_.add(constraint);
       contact.surface_velocity_after = contact.surface_velocity;
       contact.allowed_approach = 0.0;
     }
@@ -117,7 +117,7 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     const int of_sequence = sequential ? round : 0;
     if (onset_of(fastest(contacts), noise, slow, of_sequence, impacts_of_steps) == ImpactOnset::nothing)
       return;
-    touching_.assign(contacts.begin(), contacts.end());
+    touching_.assign(contacts);
     const StrikeInput impact{.rules = options.impact_rules,
                              .velocity = start_.v.data(),
                              .speed_noise = noise,
@@ -139,7 +139,7 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
 
 /// Errors of the component of an impact.
 StepErrors StepImpacts::errors(const StepInput& in) {
-  return parts_->errors(in, in.assembly.component_of(touching_.front().body()));
+  return parts_->errors(in, in.assembly.component_of(touching_[0].body()));
 }
 
 /// States and solves the impact of the contacts listed.

@@ -11,6 +11,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/contact/strike.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/dynamics/components_response.h>
 #include <carom/core/dynamics/joint_constraints.h>
 #include <carom/core/export.h>
@@ -68,7 +69,7 @@ private:
   std::vector<JointConstraints> joints_;
   std::vector<JointConstraints*> list_;  // of them
   ComponentsResponse response_;
-  std::vector<Constraint> contacts_, touching_;
+  ConstraintSet contacts_, touching_;
 };
 
 }  // namespace carom

@@ -199,14 +199,14 @@ void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
 void TimeStepper::iterate_automatically(const StepIsland& island, const StepInput& in,
                                         FixedPointJudge& judge) {
   const auto first = static_cast<std::size_t>(in.companion.iterations.first(island.components));
-  std::vector<Constraint>& kept = parts_.constraints.kept();
-  kept.assign(island.constraints.begin(), island.constraints.end());  // iterations change them
+  ConstraintSet& kept = parts_.constraints.kept();
+  kept.assign(island.constraints);  // iterations change them
   std::optional<RunError> failed;
   for (std::size_t tried = 0; tried < iteration_count; ++tried) {
     const auto iteration = static_cast<Iteration>((first + tried) % iteration_count);
     if (tried > 0 && leads_astray(iteration, in, island.components, parts_.trial)) continue;
     iteration_.use(iteration);
-    if (tried > 0) std::copy(kept.begin(), kept.end(), island.constraints.begin());
+    for (std::size_t c = 0; tried > 0 && c < kept.size(); ++c) island.constraints[c].take(kept[c]);
     judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);
     std::optional<LoadsKnown> known;
     try {

@@ -36,7 +36,7 @@ struct Closed {
     detector.place(state.time, places);
     for (const ContactPair& pair : detector.pairs(0)) {
       evaluate_positions(assembly, 0, state.view(), evaluation);
-      Constraint at;
+      SingleConstraint at;
       detector.contact(pair, state.view(), evaluation, places, at);
       if (at.gap > 1e-2) continue;
       ActiveContact& closed = contacts.list().emplace_back();
@@ -331,7 +331,7 @@ TEST(ActiveSet, CorrectionsAreTheSmallestInTheSenseOfTheMasses) {
   closed.state.v = {0.3, -0.2, 0.7};
   closed.contacts.list().pop_back();
   closed.update();
-  const Constraint at = closed[0].at;
+  const SingleConstraint at = closed[0].at;
   ASSERT_NEAR(at.gap, 1e-3, 1e-15);
   std::vector<double> of_position(3, 0.0), of_velocity(3, 0.0);
   ASSERT_TRUE(closed.contacts.corrections(closed.assembly, closed.state.v.data(), of_position.data(),

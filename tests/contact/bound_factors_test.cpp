@@ -8,6 +8,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/dynamics/components_response.h>
 
 #include <gtest/gtest.h>
@@ -71,15 +72,15 @@ protected:
   }
   /// Contacts with ground and of two bodies, and limits, each with a link of the chain or without. One acts
   /// on the pin at the ground, which holds it fast.
-  std::vector<Constraint> constraints(int count, std::uint64_t seed) const {
+  ConstraintSet constraints(int count, std::uint64_t seed) const {
     Random random(seed);
-    std::vector<Constraint> made;
+    ConstraintSet made;
     for (int i = 0; i < count; ++i) {
       const auto first = static_cast<Index>(i % (chain + others));
       const std::array<Index, 2> touched{first, (first + 5) % (chain + others)};
       const auto some = static_cast<std::size_t>(1 + i % 2);
-      made.push_back(carom_test::random_constraint(assembly_, i % 7 == 6 ? 1 : 2,
-                                                   std::span(touched).first(some), random));
+      made.add(carom_test::random_constraint(assembly_, i % 7 == 6 ? 1 : 2, std::span(touched).first(some),
+                                             random));
     }
     const double of_pin[2][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, -0.5}};
     for (int row = 0; row < 2; ++row) std::copy_n(of_pin[row], 3, made[0].row(row));
@@ -96,7 +97,7 @@ protected:
 
 TEST_F(BoundBodies, AreTheSameProblemInFactors) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const std::vector<Constraint> list = constraints(most_exact_contacts + 1 + static_cast<int>(seed), seed);
+    const ConstraintSet list = constraints(most_exact_contacts + 1 + static_cast<int>(seed), seed);
     IslandProblem island({.factored_from = factored_constraints}), whole;
     for (IslandProblem* const one : {&island, &whole}) {
       one->build(list, before_.data());
@@ -139,7 +140,7 @@ TEST_F(BoundBodies, AreTheSameProblemInFactors) {
 }
 
 TEST_F(BoundBodies, FewOfThemAreWorthExactAnswers) {
-  const std::vector<Constraint> list = constraints(most_exact_contacts, 3);
+  const ConstraintSet list = constraints(most_exact_contacts, 3);
   IslandProblem island({.factored_from = factored_constraints});
   island.build(list, before_.data());
   island.respond(response_);
@@ -147,7 +148,7 @@ TEST_F(BoundBodies, FewOfThemAreWorthExactAnswers) {
 }
 
 TEST_F(BoundBodies, LeaveNothingBehindInTheNextProblem) {
-  const std::vector<Constraint> list = constraints(60, 3);
+  const ConstraintSet list = constraints(60, 3);
   IslandProblem island({.factored_from = factored_constraints}),
       fresh({.factored_from = factored_constraints});
   island.build(list, before_.data());

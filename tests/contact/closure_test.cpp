@@ -34,12 +34,12 @@ struct Posed {
   Closure close(const std::vector<ContactMode>& modes = {}) {
     evaluate_positions(assembly, 0, state.view(), evaluation);
     if (!rows.empty()) rows.update_and_factor({state.view(), evaluation.rotation.data()});
-    std::vector<Constraint> found;
+    ConstraintSet found;
     detector.find(0, state.view(), evaluation, 1.0, found);
     contacts.list().clear();
     for (std::size_t i = 0; i < modes.size(); ++i) {
       ActiveContact& closed = contacts.list().emplace_back();
-      closed.at = found.at(i);
+      closed.at = found[i];
       closed.mode = modes[i];
       closed.place = static_cast<Index>(i);
     }

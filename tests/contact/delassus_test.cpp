@@ -66,11 +66,10 @@ protected:
   }
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(state_.v.size()); }
   /// Constraints of one to three random bodies with random rows.
-  std::vector<Constraint> constraints(Random& random, int count) {
-    std::vector<Constraint> made;
+  ConstraintSet constraints(Random& random, int count) {
+    ConstraintSet made;
     for (int i = 0; i < count; ++i) {
-      Constraint& one = made.emplace_back();
-      one.rows = 1 + i % 3;
+      Constraint& one = made.add();
       std::vector<Index> free(body_count);
       for (Index b = 0; b < body_count; ++b) free[b] = b;
       for (int b = 0; b < 1 + (i + 1) % 3; ++b) {
@@ -80,6 +79,7 @@ protected:
         one.add_body(free[at], slot.v, static_cast<int>(slot.v_size));
         free.erase(free.begin() + static_cast<std::ptrdiff_t>(at));
       }
+      one.start_rows(1 + i % 3);
       for (int row = 0; row < one.rows; ++row) {
         for (int c = 0; c < one.columns(); ++c) one.row(row)[c] = random.uniform(-1.0, 1.0);
       }
@@ -106,7 +106,7 @@ protected:
   /// W, its lower triangle mirrored, and the response to random impulses, against H B H^T.
   void expect_product(BodyResponse& response, const MatrixXd& b, double tolerance) {
     Random random(7);
-    const std::vector<Constraint> list = constraints(random, 9);
+    const ConstraintSet list = constraints(random, 9);
     std::vector<ImpulseDirection> directions;
     for (const Constraint& one : list) {
       for (int row = 0; row < one.rows; ++row) directions.push_back({&one, row});
@@ -184,9 +184,9 @@ std::array<std::uint64_t, 2> bits(const std::array<double, 2>& numbers) {
 TEST(ContactVelocity, BothRowsOfABodyOnGroundHaveTheBitsOfEach) {
   Random random(8);
   for (const int columns : {2, 3}) {
-    Constraint contact;
-    contact.rows = 2;
+    SingleConstraint contact;
     contact.add_body(4, 7, columns);
+    contact.start_rows(2);
     std::vector<double> v(20);
     for (int i = 0; i < 100; ++i) {
       // Zeros of both signs among them.
@@ -253,10 +253,12 @@ TEST_F(DelassusOfComponents, OfTheirLinearisedSteps) {
 /// Friction at the edge of its cone: columns differ from rows.
 TEST_P(DelassusTest, ColumnsOfSlippingContacts) {
   Random random(3);
-  std::vector<Constraint> list = constraints(random, 6);
+  ConstraintSet list = constraints(random, 6);
   std::vector<ImpulseDirection> directions;
   for (Constraint& one : list) {
-    one.rows = 2;
+    const std::vector<double> normal(one.row(0), one.row(1));
+    one.start_rows(2);
+    std::copy(normal.begin(), normal.end(), one.row(0));
     for (int c = 0; c < one.columns(); ++c) one.row(1)[c] = random.uniform(-1.0, 1.0);
     directions.push_back({&one, 0, random.uniform(-0.9, 0.9)});
   }
@@ -284,10 +286,10 @@ TEST(Delassus, ContactOfTwoBodies) {
   system.add(RigidBody{.mass = {.mass = ma, .inertia = 1.0}});
   system.add(RigidBody{.mass = {.mass = mb, .inertia = 1.0}, .position = {1.0, 0.0}});
   const Assembly assembly(system);
-  Constraint contact;
-  contact.rows = 2;
+  SingleConstraint contact;
   contact.add_body(0, 0, 3);
   contact.add_body(1, 3, 3);
+  contact.start_rows(2);
   contact.law = {.friction = mu, .normal_restitution = e};
   contact.friction = mu;
   // Normal from the second towards the first, tangent: the normal turned clockwise; at the middle, (0.5, 0).
@@ -299,7 +301,7 @@ TEST(Delassus, ContactOfTwoBodies) {
   IslandProblem problem;
   MassResponse masses(assembly);
   SolverChain chain;
-  problem.build({&contact, 1}, v.data());
+  problem.build(contact.alone(), v.data());
   problem.respond(masses);
   problem.set_free_velocity(v.data());
   ASSERT_TRUE(problem.solve(chain).usable());
@@ -329,11 +331,12 @@ TEST(Delassus, FrictionBound) {
   System system;
   system.add(Particle{.mass = 2.0});
   const Assembly assembly(system);
-  Constraint friction;
+  SingleConstraint friction;
   friction.type = ConstraintType::joint_friction;
-  friction.rows = 1;
   friction.add_body(0, 0, 2);
+  friction.start_rows(1);
   friction.row(0)[0] = 1.0;
+  friction.row(0)[1] = 0.0;
   friction.friction = 1.0;
   friction.of_joint.friction_bound = 3.0;
   MassResponse masses(assembly);
@@ -341,7 +344,7 @@ TEST(Delassus, FrictionBound) {
   IslandProblem problem;
   for (const double speed : {1.0, -1.4, 5.0, -4.0}) {
     const std::vector<double> v{speed, 0.0};
-    problem.build({&friction, 1}, v.data());
+    problem.build(friction.alone(), v.data());
     problem.respond(masses);
     problem.set_free_velocity(v.data());
     ASSERT_TRUE(problem.solve(chain).usable());

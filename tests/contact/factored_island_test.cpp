@@ -50,15 +50,15 @@ protected:
     }
   }
   /// Contacts of a chain of bodies, and limits over three of them.
-  std::vector<Constraint> constraints(int count, std::uint64_t seed) const {
+  ConstraintSet constraints(int count, std::uint64_t seed) const {
     Random random(seed);
-    std::vector<Constraint> made;
+    ConstraintSet made;
     for (int i = 0; i < count; ++i) {
       const int rows = i % 7 == 6 ? 1 : 2;
       std::vector<Index> touched;
       for (int b = 0; b < (rows == 1 ? 3 : 1 + i % 2); ++b)
         touched.push_back(static_cast<Index>((i + b) % body_count));
-      Constraint& one = made.emplace_back(carom_test::random_constraint(assembly_, rows, touched, random));
+      Constraint& one = made.add(carom_test::random_constraint(assembly_, rows, touched, random));
       one.law.tangential_restitution = 0.2;
       one.surface_velocity_after[0] = 0.01;
     }
@@ -73,7 +73,7 @@ protected:
 
 TEST_F(FactoredIsland, IsTheSameProblem) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const std::vector<Constraint> list = constraints(60 + static_cast<int>(seed), seed);
+    const ConstraintSet list = constraints(60 + static_cast<int>(seed), seed);
     IslandProblem island(in_factors);
     island.build(list, before_.data());
     island.respond(masses_);
@@ -119,7 +119,7 @@ TEST_F(FactoredIsland, IsTheSameProblem) {
 }
 
 TEST_F(FactoredIsland, StartsFromImpulsesOfTheCaller) {
-  const std::vector<Constraint> list = constraints(80, 4);
+  const ConstraintSet list = constraints(80, 4);
   IslandProblem island(in_factors);
   island.build(list, before_.data());
   island.respond(masses_);
@@ -148,7 +148,7 @@ TEST_F(FactoredIsland, StartsFromImpulsesOfTheCaller) {
 
 TEST_F(FactoredIsland, HasTheSameNumbersStatedInOneGo) {
   for (const int count : {12, 64, 80, 81}) {
-    const std::vector<Constraint> list = constraints(count, 5);
+    const ConstraintSet list = constraints(count, 5);
     IslandProblem apart(in_factors), at_once(in_factors);
     apart.build(list, before_.data());
     apart.respond(masses_);
@@ -174,7 +174,7 @@ TEST_F(FactoredIsland, HasTheSameNumbersStatedInOneGo) {
 
 TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
   IslandProblem island;
-  const auto respond = [&](const std::vector<Constraint>& list) {
+  const auto respond = [&](const ConstraintSet& list) {
     island.build(list, before_.data());
     island.respond(masses_);
     return island.problem().is_factored();
@@ -183,9 +183,9 @@ TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
   island = IslandProblem(in_factors);
   EXPECT_FALSE(respond(constraints(factored_constraints - 1, 1)));
   EXPECT_TRUE(respond(constraints(factored_constraints, 1)));
-  std::vector<Constraint> of_one = constraints(factored_constraints, 1);
+  ConstraintSet of_one = constraints(factored_constraints, 1);
   for (Constraint& one : of_one) {
-    one = constraints(1, 2).front();
+    one.take(constraints(1, 2)[0]);
   }
   EXPECT_FALSE(respond(of_one));
   // Nor where bodies do not answer for themselves; W is a matrix then, whatever was expected.
@@ -200,7 +200,7 @@ TEST_F(FactoredIsland, IsForManyConstraintsOfSeveralBodiesOnly) {
   private:
     MassResponse* masses_;
   } together(masses_);
-  const std::vector<Constraint> list = constraints(factored_constraints, 1);
+  const ConstraintSet list = constraints(factored_constraints, 1);
   island.build(list, before_.data());
   island.respond(masses_);
   const ContactProblem factored = island.problem();

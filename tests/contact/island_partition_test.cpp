@@ -1,5 +1,6 @@
 // Islands among constraints with one to three bodies.
 
+#include "tests/constraint_sets.h"
 #include <carom/contact/island_partition.h>
 
 #include <gtest/gtest.h>
@@ -10,8 +11,8 @@ namespace {
 
 using namespace carom;
 
-Constraint between(std::initializer_list<Index> bodies) {
-  Constraint made;
+SingleConstraint between(std::initializer_list<Index> bodies) {
+  SingleConstraint made;
   for (const Index body : bodies) made.add_body(body, 3 * body, 3);
   return made;
 }
@@ -24,7 +25,8 @@ void expect_range(const Range& found, Index begin, Index end) {
 constexpr auto alone = [](Index body) { return body; };
 
 TEST(IslandPartition, LeavesWhatIsInOrderAlone) {
-  std::vector<Constraint> list{between({0}), between({0}), between({2}), between({5}), between({5})};
+  ConstraintSet list =
+      carom_test::set_of({between({0}), between({0}), between({2}), between({5}), between({5})});
   IslandPartition partition;
   const auto islands = partition.arrange(std::span(list), 6, alone);
   ASSERT_EQ(islands.size(), 3u);
@@ -35,8 +37,8 @@ TEST(IslandPartition, LeavesWhatIsInOrderAlone) {
 
 TEST(IslandPartition, JoinsOverSharedBodies) {
   // 4-1 and 1-0 share a body; 2 stands alone; three bodies 6, 7, 8 are joined by one constraint.
-  std::vector<Constraint> list{between({2}), between({4, 1}), between({8, 7, 6}), between({7}),
-                               between({1, 0})};
+  ConstraintSet list =
+      carom_test::set_of({between({2}), between({4, 1}), between({8, 7, 6}), between({7}), between({1, 0})});
   for (std::size_t i = 0; i < list.size(); ++i) list[i].source = static_cast<Index>(i);
   IslandPartition partition;
   const auto islands = partition.arrange(std::span(list), 9, alone);
@@ -49,7 +51,7 @@ TEST(IslandPartition, JoinsOverSharedBodies) {
 }
 
 TEST(IslandPartition, NodesMayStandForSeveralBodies) {
-  std::vector<Constraint> list{between({0}), between({1}), between({2}), between({3})};
+  ConstraintSet list = carom_test::set_of({between({0}), between({1}), between({2}), between({3})});
   IslandPartition partition;
   const auto islands = partition.arrange(std::span(list), 4, [](Index body) { return body % 2; });
   ASSERT_EQ(islands.size(), 2u);
@@ -58,7 +60,7 @@ TEST(IslandPartition, NodesMayStandForSeveralBodies) {
 }
 
 TEST(IslandPartition, NothingHasNoIslands) {
-  std::vector<Constraint> list;
+  ConstraintSet list;
   EXPECT_TRUE(IslandPartition().arrange(std::span(list), 3, alone).empty());
 }
 

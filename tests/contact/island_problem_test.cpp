@@ -53,7 +53,7 @@ protected:
   }
 
   Assembly assembly_;
-  std::vector<Constraint> contacts_;
+  ConstraintSet contacts_;
   SolverChain chain_;
 };
 

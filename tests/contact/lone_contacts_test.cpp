@@ -58,7 +58,7 @@ public:
   [[nodiscard]] bool solve(LoneContacts& lone) {
     return lone.solve(list_, masses_, {before.data(), free.data(), change.data()});
   }
-  [[nodiscard]] std::vector<Constraint>& list() { return list_; }
+  [[nodiscard]] ConstraintSet& list() { return list_; }
   [[nodiscard]] MassResponse& masses() { return masses_; }
 
   std::vector<double> before, free, change;  // velocities, by impulses the last
@@ -66,7 +66,7 @@ public:
 private:
   Assembly assembly_;
   MassResponse masses_;
-  std::vector<Constraint> list_;
+  ConstraintSet list_;
 };
 
 TEST(LoneContacts, AreSolvedAsProblemsOfTheirOwnAre) {
@@ -159,13 +159,13 @@ TEST(LoneContacts, RefuseWhatIsNotRegular) {
   LoneContacts lone;
   ASSERT_TRUE(jamming.solve(lone));
   jamming.change.assign(jamming.change.size(), 0.0);
-  jamming.list().back().friction = 1e3;
+  (jamming.list().end() - 1)->friction = 1e3;
   EXPECT_TRUE(are_refused(jamming));
 
   // Neither closing nor opening: both answers are as good.
-  jamming.list().back().friction = 0.1;
+  (jamming.list().end() - 1)->friction = 0.1;
   jamming.before.assign(jamming.before.size(), 0.0);
-  const Index v = jamming.list().back().blocks[0].v;
+  const Index v = (jamming.list().end() - 1)->blocks[0].v;
   for (Index k = v; k < v + 3; ++k) jamming.free[k] = 0.0;
   EXPECT_TRUE(are_refused(jamming));
 }

@@ -102,8 +102,7 @@ public:
 
 private:
   Constraint& add(Index a, Index serial, double gap) {
-    Constraint& contact = found_.emplace_back();
-    contact.rows = 1;
+    Constraint& contact = found_.add();
     contact.gap = gap;
     contact.key = {{FeatureKey::Owner::body, a, 0}, {FeatureKey::Owner::body, serial, 0}};
     contact.add_body(a, 2 * a, 2);
@@ -113,7 +112,9 @@ private:
     if (gap > margin) return;
     Constraint& contact = add(a, wall, gap);
     contact.key.b.owner = FeatureKey::Owner::obstacle;
+    contact.start_rows(1);
     contact.row(0)[0] = normal;
+    contact.row(0)[1] = 0.0;
   }
   void add_pair(Index a, Index b, double margin) {
     const double x = discs[a].place[0] - discs[b].place[0], y = discs[a].place[1] - discs[b].place[1];
@@ -121,6 +122,7 @@ private:
     if (gap > margin) return;
     Constraint& contact = add(a, b, gap);
     contact.add_body(b, 2 * b, 2);
+    contact.start_rows(1);
     double* const row = contact.row(0);
     row[0] = x / distance;
     row[1] = y / distance;
@@ -130,7 +132,7 @@ private:
 
   std::vector<Disc> from_;
   std::vector<double> lengths_;
-  std::vector<Constraint> found_;
+  ConstraintSet found_;
   std::vector<Range> selected_;
 };
 

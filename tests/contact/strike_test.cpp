@@ -41,7 +41,7 @@ struct Blow {
 
   TouchingBody body;
   std::array<double, 3> velocity;  ///< (v_x, v_y, omega)
-  std::vector<Constraint> touching;
+  ConstraintSet touching;
   ImpactProblems problems{IslandOptions{.plastic_jams = true}};
   double gain = 0.0;  ///< of kinetic energy by the last one [J]
 };
@@ -166,7 +166,7 @@ TEST(Strike, StepsLeaveSlowContactsAndEventsCloseThem) {
 }
 
 TEST(Strike, FrictionInJointsTakesPartInEventsWhereItFollowsForces) {
-  Constraint contact, friction, rolling;
+  SingleConstraint contact, friction, rolling;
   friction.type = ConstraintType::joint_friction;
   rolling.type = ConstraintType::rolling;
   for (const ImpactsOfMode& mode : {impacts_of_steps, impacts_of_events}) {

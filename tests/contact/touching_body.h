@@ -58,7 +58,7 @@ public:
     }
     return change;
   }
-  [[nodiscard]] const std::vector<Constraint>& contacts() const { return contacts_; }
+  [[nodiscard]] const ConstraintSet& contacts() const { return contacts_; }
   /// States the impact of some of its contacts, and solves it.
   bool solve(IslandProblem& problem, std::span<const Constraint> contacts,
              const std::array<double, 3>& velocity) {
@@ -89,7 +89,7 @@ private:
   }
 
   Assembly assembly_;
-  std::vector<Constraint> contacts_;
+  ConstraintSet contacts_;
 };
 
 }  // namespace carom_test

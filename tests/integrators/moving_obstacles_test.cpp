@@ -247,7 +247,7 @@ TEST(MovingObstacles, GapsAreProjectedToWhereThePlaneIs) {
   const auto depth_of = [&detector](const Simulation& run) {
     Evaluation evaluation = make_evaluation(run.assembly());
     evaluate_positions(run.assembly(), 0, run.state().view(), evaluation);
-    std::vector<Constraint> contacts;
+    ConstraintSet contacts;
     detector.find(0, run.state().view(), evaluation, 0.0, contacts);
     double depth = 0.0;
     for (const Constraint& contact : contacts) {

@@ -54,7 +54,7 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   const Detector detector(model.assembly);
   const Index component = 0;  // all hang together
   ASSERT_TRUE(detector.joints().has_friction(component));
-  std::vector<Constraint> found;
+  ConstraintSet found;
   detector.joints().find_friction(component, model.state.view(), model.evaluation, found);
   ASSERT_EQ(found.size(), 1u);
   const Constraint& contact = found[0];

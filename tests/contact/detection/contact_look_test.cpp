@@ -36,14 +36,15 @@ protected:
   const carom_test::PlacedModel model{piled()};
   const Detector detector{model.assembly};
   ContactLook look{model.assembly, detector};
-  std::vector<Constraint> found;
+  ConstraintSet found;
 };
 
 TEST_F(ContactLookTest, FindsWhatTheDetectorFinds) {
   GroundPlaces places;
   detector.place(0.0, places);
   BodyContactSearch search;
-  std::vector<Constraint> expected{Constraint{}};
+  ConstraintSet expected;
+  expected.add();
   look.find(model.state.view(), 1.0, expected);  // what was there before is left out
   look.find(model.state.view(), 0.0, found);
   EXPECT_LT(found.size(), expected.size());
@@ -71,7 +72,7 @@ TEST_F(ContactLookTest, KeysNameTheirPairs) {
     ++(pair->other != none           ? of_bodies
        : pair->ground_vertex != none ? of_ground_vertices
                                      : of_ground_outlines);
-    Constraint again;
+    SingleConstraint again;
     look.contact(*pair, model.state.view(), again);
     EXPECT_EQ(again.key, contact.key);
     EXPECT_NEAR(again.gap, contact.gap, 1e-15);  // rounding of places of up to 1 m

@@ -90,7 +90,7 @@ public:
         if (bound)
           speed = std::max(speed, bound->most_speed(at.state.v, motion_of(detector_, pair, at.places)));
         if (!bound && start_.v.size() > 2) {
-          Constraint contact;
+          SingleConstraint contact;
           detector_.contact(pair, at.state, at.evaluation, at.places, contact);
           rule.sixth = std::pow(start_.v[2], 4) * std::hypot(contact.drift[0], contact.drift[1]);
         }

@@ -1,3 +1,4 @@
+#include "tests/constraint_sets.h"
 #include <carom/contact/detection/ground_contacts.h>
 
 #include "tests/contact/detection/placed_model.h"
@@ -58,18 +59,18 @@ TEST(GroundContacts, FindAllPairsThatTouch) {
     for (Index component = 0; component < components; ++component) contacts.append_pairs(component, pairs);
     const GroundPlaces places;
     for (const double margin : {-0.9, 0.0, 0.1, infinity}) {
-      std::vector<Constraint> found;
+      ConstraintSet found;
       contacts.find({0, components}, {model.state.view(), model.evaluation, places, nullptr, margin, nullptr},
                     found);
       std::size_t next = 0;
       for (const ContactPair& pair : pairs) {
-        Constraint at;
+        SingleConstraint at;
         contacts.contact(pair, model.state.view(), model.evaluation, nullptr, at);
         if (at.gap > margin) continue;
         ASSERT_LT(next, found.size());
         EXPECT_EQ(found[next].key, at.key);
         EXPECT_EQ(found[next].gap, at.gap);
-        EXPECT_EQ(found[next].jacobian, at.jacobian);
+        EXPECT_EQ(carom_test::numbers_of(found[next]), carom_test::numbers_of(at));
         ++next;
       }
       EXPECT_EQ(next, found.size());
@@ -91,14 +92,14 @@ TEST(GroundContacts, FindThoseThatLastAmongManyAsOneByOne) {
     LastingContacts lasting;
     lasting.start(0.1);
     for (const ContactPair& pair : pairs) {
-      Constraint at;
+      SingleConstraint at;
       contacts.contact(pair, model.state.view(), model.evaluation, nullptr, at);
       lasting.add(at.key);
     }
     lasting.finish();
     const GroundPlaces places;
     const ContactQuery query{model.state.view(), model.evaluation, places, nullptr, 0.0, &lasting};
-    std::vector<Constraint> together, one_by_one;
+    ConstraintSet together, one_by_one;
     contacts.find({0, components}, query, together);
     for (Index component = 0; component < components; ++component) {
       contacts.find({component, component + 1}, query, one_by_one);
@@ -107,7 +108,7 @@ TEST(GroundContacts, FindThoseThatLastAmongManyAsOneByOne) {
     for (std::size_t i = 0; i < together.size(); ++i) {
       EXPECT_EQ(together[i].key, one_by_one[i].key);
       EXPECT_EQ(together[i].gap, one_by_one[i].gap);
-      EXPECT_EQ(together[i].jacobian, one_by_one[i].jacobian);
+      EXPECT_EQ(carom_test::numbers_of(together[i]), carom_test::numbers_of(one_by_one[i]));
       EXPECT_EQ(together[i].allowed_approach, one_by_one[i].allowed_approach);
       if (together[i].gap > 0.0) ++opened;
     }
@@ -116,9 +117,9 @@ TEST(GroundContacts, FindThoseThatLastAmongManyAsOneByOne) {
 }
 
 // A list that is kept holds contacts of other bodies, with other rows, before.
-TEST(GroundContacts, FindIntoAKeptListWhatTheyFindAnew) {
+TEST(GroundContacts, FindIntoASetThatHeldOthersWhatTheyFindAnew) {
   carom_test::Random random(4205);
-  KeptList<Constraint> kept;
+  ConstraintSet kept;
   int nothing_near = 0, several = 0;
   for (int repeat = 0; repeat < 20; ++repeat) {
     const carom_test::PlacedModel model(random_bodies(random, 90, Joined::not_at_all));
@@ -127,7 +128,7 @@ TEST(GroundContacts, FindIntoAKeptListWhatTheyFindAnew) {
     for (const double margin : {-0.9, 0.0, infinity}) {
       const ContactQuery query{model.state.view(), model.evaluation, places, nullptr, margin, nullptr};
       for (Index first = 0; first < 90; first += 3) {
-        std::vector<Constraint> anew;
+        ConstraintSet anew;
         contacts.find({first, first + 3}, query, anew);
         kept.clear();
         contacts.find({first, first + 3}, query, kept);
@@ -138,7 +139,7 @@ TEST(GroundContacts, FindIntoAKeptListWhatTheyFindAnew) {
         several += anew.size() > 1 ? 1 : 0;
         ASSERT_EQ(kept.size(), anew.size());
         for (std::size_t i = 0; i < anew.size(); ++i) {
-          const Constraint &a = kept.all()[i], &b = anew[i];
+          const Constraint &a = kept[i], &b = anew[i];
           EXPECT_EQ(a.key, b.key);
           EXPECT_EQ(a.gap, b.gap);
           EXPECT_EQ(a.rows, b.rows);
@@ -179,7 +180,7 @@ TEST(GroundContacts, FrictionActsAtTheSpeedOfSliding) {
   const GroundContacts contacts(model.assembly);
   EXPECT_TRUE(contacts.law_facts().static_friction);
   const GroundPlaces places;
-  std::vector<Constraint> found;
+  ConstraintSet found;
   contacts.find({0, 1}, {model.state.view(), model.evaluation, places, nullptr, 0.0, nullptr}, found);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].friction, curve.friction_at(0.3));
@@ -193,7 +194,7 @@ TEST(GroundContacts, InSpaceRowsAreAFrame) {
   const carom_test::PlacedModel model(system);
   const GroundContacts contacts(model.assembly);
   const GroundPlaces places;
-  std::vector<Constraint> found;
+  ConstraintSet found;
   contacts.find({0, 1}, {model.state.view(), model.evaluation, places, nullptr, infinity, nullptr}, found);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].rows, 3);

@@ -8,6 +8,7 @@
 #include <carom/contact/detection/half_space.h>
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_rows.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/system.h>
 
 #include "tests/contact/detection/convex_reference.h"
@@ -219,7 +220,7 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
     const GapPoint at = gap_at(t);
     const auto now = q_at(t);
     const StateView state{t, now.data(), v.data(), nullptr};
-    Constraint rows;
+    SingleConstraint rows;
     fill_pair_rows(PairSide::of_body(slot, 0, local.radius, state),
                    ground.pieces.side(0, ground.shapes.motion(0, ground.places)), at, rows);
     return rows;
@@ -231,7 +232,7 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
                 rate([&](double t) { return rows_at(t).velocity(row, v.data()); }), 3e-11);
   }
   // The surface runs to the right of who stands on it.
-  Constraint still;
+  SingleConstraint still;
   const StateView state{0.0, q.data(), v.data(), nullptr};
   const PairSide body = PairSide::of_body(slot, 0, local.radius, state);
   const GapPoint at = gap_at(0);  // places the ground

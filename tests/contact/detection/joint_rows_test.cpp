@@ -1,3 +1,4 @@
+#include "tests/constraint_sets.h"
 #include <carom/contact/detection/joint_rows.h>
 
 #include "tests/contact/detection/placed_model.h"
@@ -52,14 +53,14 @@ TEST(JointRows, LimitsAreFoundWithinTheMargin) {
   const Index component = component_of(model.assembly, flap.flap);
   const GroundPlaces places;
   const auto found = [&](double margin) {
-    std::vector<Constraint> out;
+    ConstraintSet out;
     rows.find_limits(component, {model.state.view(), model.evaluation, places, nullptr, margin, nullptr},
                      out);
     return out;
   };
   EXPECT_TRUE(found(0.0).empty());
   EXPECT_EQ(found(infinity).size(), 2U);
-  const std::vector<Constraint> near = found(0.2 * arm);
+  const ConstraintSet near = found(0.2 * arm);
   ASSERT_EQ(near.size(), 1U);
   EXPECT_EQ(near[0].type, ConstraintType::limit);
   EXPECT_EQ(near[0].key.a, (FeatureKey{FeatureKey::Owner::joint, flap.stop.serial, 1}));
@@ -71,7 +72,7 @@ TEST(JointRows, LimitsAreFoundWithinTheMargin) {
   EXPECT_DOUBLE_EQ(near[0].velocity(0, model.state.v.data()), -2.0 * arm);
   EXPECT_EQ(near[0].body(), model.assembly.layout()->index(flap.flap));
 
-  std::vector<Constraint> none_of_it;
+  ConstraintSet none_of_it;
   rows.find_limits(component_of(model.assembly, flap.ball),
                    {model.state.view(), model.evaluation, places, nullptr, infinity, nullptr}, none_of_it);
   EXPECT_TRUE(none_of_it.empty());
@@ -89,7 +90,7 @@ TEST(JointRows, AnglesCountTimesAnArm) {
   for (const JointId joint : {pin, slide}) system.add(JointFriction{.joint = joint, .bound = 2.0});
   const carom_test::PlacedModel model(system);
   const JointRows rows(model.assembly);
-  std::vector<Constraint> out;
+  ConstraintSet out;
   rows.find_friction(0, model.state.view(), model.evaluation, out);
   ASSERT_EQ(out.size(), 2U);
   constexpr double between = 0.25;  // of 0.3 m and 0.4 m: 1/|(1/0.3, 1/0.4)| is 0.24 m
@@ -107,17 +108,17 @@ TEST(JointRows, FrictionIsARowAlongTheCoordinate) {
   EXPECT_TRUE(rows.has_friction());
   EXPECT_TRUE(rows.has_friction(component));
   EXPECT_FALSE(rows.has_friction(1 - component));
-  std::vector<Constraint> out;
+  ConstraintSet out;
   rows.find_friction(component, model.state.view(), model.evaluation, out);
   ASSERT_EQ(out.size(), 1U);
   EXPECT_EQ(out[0].type, ConstraintType::joint_friction);
   EXPECT_DOUBLE_EQ(out[0].of_joint.friction_bound, 0.5 / arm);
   EXPECT_EQ(out[0].law.sticking_friction(), 1.5);
   EXPECT_DOUBLE_EQ(out[0].velocity(0, model.state.v.data()), 2.0 * arm);
-  Constraint moved = out[0];
-  moved.jacobian = {};
+  SingleConstraint moved(out[0]);
+  std::fill_n(moved.row(0), moved.columns(), 0.0);
   rows.update_friction({model.state.view(), model.evaluation.rotation.data()}, moved);
-  EXPECT_EQ(moved.jacobian, out[0].jacobian);
+  EXPECT_EQ(carom_test::numbers_of(moved), carom_test::numbers_of(out[0]));
 }
 
 TEST(JointRows, PairsAreTheRowsByNumber) {
@@ -131,14 +132,14 @@ TEST(JointRows, PairsAreTheRowsByNumber) {
   ASSERT_EQ(limits.size(), 2U);
   ASSERT_EQ(friction.size(), 1U);
   for (const ContactPair& pair : limits) {
-    Constraint at;
+    SingleConstraint at;
     rows.constraint(pair.joint_row, model.state.view(), model.evaluation, at);
     EXPECT_EQ(at.type, ConstraintType::limit);
     EXPECT_EQ(at.source, pair.joint_row);
     EXPECT_EQ(at.body(), pair.body);
     EXPECT_EQ(pair.ground_shape, none);
   }
-  Constraint at;
+  SingleConstraint at;
   rows.constraint(friction[0].joint_row, model.state.view(), model.evaluation, at);
   EXPECT_EQ(at.type, ConstraintType::joint_friction);
 }

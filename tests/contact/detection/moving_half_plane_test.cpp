@@ -69,25 +69,25 @@ public:
 
   std::size_t pairs() const { return pairs_.size(); }
   /// The contact of a pair at a time, body and particle moving along their course.
-  Constraint contact(std::size_t pair, double t) {
+  SingleConstraint contact(std::size_t pair, double t) {
     go_to(t);
     GroundPlaces places;
     detector_.place(t, places);
-    Constraint contact;
+    SingleConstraint contact;
     detector_.contact(pairs_[pair].pair, state_.view(), evaluation_, places, contact);
     return contact;
   }
   /// The same from a step of length h that begins there.
-  Constraint contact_of_step(std::size_t pair, double t, double h) {
+  SingleConstraint contact_of_step(std::size_t pair, double t, double h) {
     go_to(t);
     GroundPlaces now, after;
     detector_.place(t, now);
     detector_.place(t + h, after);
-    std::vector<Constraint> found;
+    ConstraintSet found;
     for (Index component = 0; component < assembly_.components().size(); ++component) {
       detector_.find(component, state_.view(), evaluation_, now, &after, infinity, found);
     }
-    return found[pair];
+    return SingleConstraint(found[pair]);
   }
   const State& state() const { return state_; }
   std::vector<double> accelerations(double t) const {

@@ -57,12 +57,12 @@ struct MovingPair {
   GapPoint gap_at(double time) const {
     return tracked_gap(a_at(time).view(), feature_a, b_at(time).view(), feature_b);
   }
-  Constraint rows_at(double time) const {
+  SingleConstraint rows_at(double time) const {
     const auto now = q_at(time);
     const StateView state{time, now.data(), v.data(), nullptr};
     const PairSide b =
         ground_motion ? ground_at(time) : PairSide::of_body(slot_b, 7, outline_b.radius, state);
-    Constraint rows;
+    SingleConstraint rows;
     fill_pair_rows(body_at(time), b, gap_at(time), rows);
     return rows;
   }
@@ -95,7 +95,7 @@ double rate(F&& f) {
 constexpr double tolerance = 3e-11;
 
 void expect_rates(const MovingPair& pair) {
-  const Constraint rows = pair.rows_at(0);
+  const SingleConstraint rows = pair.rows_at(0);
   EXPECT_NEAR(rows.velocity(0, pair.v.data()), rate([&](double t) { return pair.gap_at(t).gap; }), tolerance);
   for (int row = 0; row < 2; ++row) {
     const double expected = rate([&](double t) { return pair.rows_at(t).velocity(row, pair.v.data()); });
@@ -124,7 +124,7 @@ TEST(PairRows, OfParticles) {
     if (i % 3 != 0) pair.make_particle(pair.slot_a, pair.outline_a);
     if (i % 3 != 1) pair.make_particle(pair.slot_b, pair.outline_b);
     if (!pair.choose_features(0)) continue;
-    const Constraint rows = pair.rows_at(0);
+    const SingleConstraint rows = pair.rows_at(0);
     EXPECT_EQ(rows.columns(), (i % 3 != 0 ? 2 : 3) + (i % 3 != 1 ? 2 : 3));
     expect_rates(pair);
   }
@@ -160,7 +160,7 @@ TEST(PairRows, OfAShapeThatMovesAsPrescribed) {
     if (!pair.choose_features(i % 2)) continue;
     expect_rates(pair);
     // The place that is touched, later.
-    Constraint rows = pair.rows_at(0);
+    SingleConstraint rows = pair.rows_at(0);
     EXPECT_EQ(rows.bodies, 1);
     EXPECT_EQ(rows.surface_velocity_after, rows.surface_velocity);
     const GroundMotion now = pair.ground_motion(0), after = pair.ground_motion(0.5);
@@ -194,7 +194,7 @@ TEST(PairRows, FollowThePlaceThatIsTouchedAlongAShapeThatTurns) {
     if (!pair.choose_features(i % 2)) continue;
     ++kinds[static_cast<std::size_t>(pair.gap_at(0).kind)];
     const auto error = [&](double step) {
-      Constraint rows = pair.rows_at(0);
+      SingleConstraint rows = pair.rows_at(0);
       add_motion_after(pair.body_at(0), pair.ground_at(0), pair.gap_at(0), pair.ground_motion(0),
                        pair.ground_motion(step), step, rows);
       return rows.velocity_after(0, pair.v.data()) - pair.rows_at(step).velocity(0, pair.v.data());
@@ -213,7 +213,7 @@ TEST(PairRows, AgainstAShapeAtRestHasNoSurfaceVelocity) {
   MovingPair pair(random);
   ASSERT_TRUE(pair.choose_features(0));
   const StateView state{0.0, pair.q.data(), pair.v.data(), nullptr};
-  Constraint rows;
+  SingleConstraint rows;
   fill_pair_rows(PairSide::of_body(pair.slot_a, 4, pair.outline_a.radius, state),
                  PairSide::at_rest(pair.outline_b.radius), pair.gap_at(0), rows);
   EXPECT_EQ(rows.bodies, 1);
@@ -228,7 +228,7 @@ TEST(PairRows, KeepMomentumAndAngularMomentum) {
   for (int i = 0; i < 2000 && !HasFailure(); ++i) {
     MovingPair pair(random);
     pair.choose_features(0);
-    const Constraint rows = pair.rows_at(0);
+    const SingleConstraint rows = pair.rows_at(0);
     ASSERT_EQ(rows.bodies, 2);
     EXPECT_EQ(rows.blocks[0].body, 4U);
     EXPECT_EQ(rows.blocks[1].body, 7U);

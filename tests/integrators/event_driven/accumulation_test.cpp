@@ -1,5 +1,6 @@
 // Ends of accumulations of impacts from the times of the latest ones.
 
+#include <carom/core/constraint_set.h>
 #include <carom/integrators/event_driven/accumulation.h>
 
 #include <gtest/gtest.h>
@@ -53,12 +54,13 @@ TEST(Accumulation, UnrelatedImpactsInBetween) {
     // Of another contact, at times that follow no rule.
     for (int i = 0; i < k % 3; ++i) impacts.remember(1.0 - (0.9 - 0.1 * i) * std::pow(ratio, k), contact(1));
   }
-  std::vector<Constraint> closing(1);
-  closing.front().key = contact(0);
+  ConstraintSet closing;
+  closing.add();
+  closing[0].key = contact(0);
   const double now = 1.0 - std::pow(ratio, 7);
   EXPECT_TRUE(std::isnan(impacts.end(now)));
   EXPECT_NEAR(impacts.end(now, closing), 1.0, 1e-12);
-  closing.front().key = contact(1);
+  closing[0].key = contact(1);
   EXPECT_TRUE(std::isnan(impacts.end(now, closing)));
 }
 
@@ -94,8 +96,9 @@ TEST(Accumulation, ContactsOfLongAgoAreForgotten) {
     impacts.remember(time, contact(0));
     for (int i = 1; i <= 4; ++i) impacts.remember(time + 0.01 * i * std::pow(ratio, k), contact(++other));
   }
-  std::vector<Constraint> closing(1);
-  closing.front().key = contact(0);
+  ConstraintSet closing;
+  closing.add();
+  closing[0].key = contact(0);
   const double now = 2.0 - std::pow(ratio, 7);
   EXPECT_TRUE(std::isnan(impacts.end(now)));
   EXPECT_NEAR(impacts.end(now, closing), 2.0, 1e-12);

@@ -79,7 +79,7 @@ TEST(EventBalance, RecordsTheBodyAndTheObstacleOfAContact) {
   const Assembly assembly(system);
   const Detector detector(assembly);
   const State state = assembly.initial_state();
-  std::vector<Constraint> contacts;
+  ConstraintSet contacts;
   detector.find(0, state.view(), make_evaluation(assembly), 1.0, contacts);
   ASSERT_EQ(contacts.size(), 1U);
   EventBalance balance;

@@ -157,7 +157,7 @@ std::vector<double> forces_at_rest(const System& system) {
   motion.model().unknowns.gather(assembly.initial_state(), y);
   MotionSample at(assembly);
   motion.sample(0.0, y.data(), Forces::without_contact, at);
-  Constraint contact;
+  SingleConstraint contact;
   for (Index i = 0; i < motion.model().pairs.size(); ++i) {
     motion.contact(i, at, contact);
     if (contact.gap > 1e-12) continue;

@@ -5,6 +5,7 @@
 #include "tests/integrators/event_driven/body_scenes.h"
 
 #include <carom/carom.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 
@@ -133,7 +134,7 @@ TEST_P(ContactTurning, TakesNoMemoryOnceContactsLast) {
 INSTANTIATE_TEST_SUITE_P(Scenes, ContactTurning, testing::Values(0, 1, 2));
 
 TEST(Turning, CountsByHowFarItMovesInAStep) {
-  Constraint contact;
+  SingleConstraint contact;
   EXPECT_FALSE(contact.turns(1.0, 0.0));
   contact.drift[1] = -2.0;
   EXPECT_TRUE(contact.turns(1e-3, 1.9e-6));

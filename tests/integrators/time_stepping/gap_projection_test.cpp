@@ -26,7 +26,7 @@ double deepest(const Simulation& simulation) {
   const Assembly& assembly = simulation.assembly();
   Evaluation evaluation = make_evaluation(assembly);
   const Detector detector(assembly);
-  std::vector<Constraint> contacts;
+  ConstraintSet contacts;
   for (Index component = 0; component < assembly.components().size(); ++component) {
     evaluate_positions(assembly, component, simulation.state().view(), evaluation);
     detector.find(component, simulation.state().view(), evaluation, 0.0, contacts);

@@ -48,7 +48,7 @@ double deepest(const Simulation& simulation) {
   const Detector detector(assembly);
   GroundPlaces places;
   detector.place(state.time, places);
-  std::vector<Constraint> contacts;
+  ConstraintSet contacts;
   BodyContactSearch search;
   const ContactQuery query{state, evaluation, places};
   detector.find({0, static_cast<Index>(assembly.components().size())}, query, contacts);

@@ -1,5 +1,6 @@
 // Components that constraints join for some steps only: which they are, and that they are solved as one.
 
+#include "tests/constraint_sets.h"
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
 #include <carom/integrators/time_stepping/island_iteration.h>
@@ -17,17 +18,22 @@ using namespace carom;
 using namespace carom::planar;
 
 /// A contact along x: its first body is on the right. One body: against the ground.
-Constraint contact(const Assembly& assembly, std::initializer_list<Index> bodies, double restitution = 0.5) {
-  Constraint made;
-  made.rows = 1;
+SingleConstraint contact(const Assembly& assembly, std::initializer_list<Index> bodies,
+                         double restitution = 0.5) {
+  SingleConstraint made;
   made.type = ConstraintType::limit;
   made.law.normal_restitution = restitution;
   double sign = 1.0;
   for (const Index body : bodies) {
     const BodySlot& slot = assembly.layout()->bodies()[body];
-    made.row(0)[made.columns()] = sign;
     made.add_body(body, slot.v, static_cast<int>(slot.v_size));
-    sign = -1.0;
+  }
+  made.start_rows(1);
+  std::fill_n(made.row(0), made.columns(), 0.0);
+  int column = 0;
+  for (int b = 0; b < made.bodies; ++b, sign = -1.0) {
+    made.row(0)[column] = sign;
+    column += made.blocks[static_cast<std::size_t>(b)].columns;
   }
   return made;
 }
@@ -40,13 +46,13 @@ Assembly particles() {
 }
 
 /// Finds the islands of bodies that are components, and brings their constraints together.
-void find(StepIslands& islands, std::span<const Range> batches, std::vector<Constraint>& constraints) {
+void find(StepIslands& islands, std::span<const Range> batches, ConstraintSet& constraints) {
   std::vector<JoinedNodes> joined;
   for (const Constraint& at : constraints) {
     joined.push_back({at.body(), at.blocks[at.bodies == 1 ? 0 : 1].body});
   }
-  std::vector<Constraint> in_order;
-  for (const Index i : islands.find(batches, joined)) in_order.push_back(constraints[i]);
+  ConstraintSet in_order;
+  for (const Index i : islands.find(batches, joined)) in_order.add(constraints[i]);
   constraints = in_order;
   islands.take(constraints);
 }
@@ -59,8 +65,8 @@ TEST(StepIslands, JoinComponentsAsLongAsConstraintsDo) {
   const Assembly assembly = particles();
   StepIslands islands(assembly);
   const std::vector<Range> alone{{0, 1}, {1, 2}, {2, 3}, {3, 4}};
-  std::vector<Constraint> list{contact(assembly, {0}), contact(assembly, {1, 3}), contact(assembly, {2}),
-                               contact(assembly, {3})};
+  ConstraintSet list = carom_test::set_of(
+      {contact(assembly, {0}), contact(assembly, {1, 3}), contact(assembly, {2}), contact(assembly, {3})});
   find(islands, alone, list);
   ASSERT_EQ(islands.list().size(), 3u);
   EXPECT_EQ(components(islands.list()[0]), (std::vector<Index>{0}));
@@ -71,14 +77,15 @@ TEST(StepIslands, JoinComponentsAsLongAsConstraintsDo) {
   EXPECT_EQ(islands.list()[1].constraints[1].body(), 3u);
   EXPECT_EQ(islands.list()[2].constraints[0].body(), 2u);
   // Without the constraint in the next step everybody stands alone again; a chain joins all.
-  list = {contact(assembly, {0}), contact(assembly, {3})};
+  list = carom_test::set_of({contact(assembly, {0}), contact(assembly, {3})});
   find(islands, alone, list);
   ASSERT_EQ(islands.list().size(), 4u);
   for (Index i = 0; i < 4; ++i) {
     EXPECT_EQ(components(islands.list()[i]), (std::vector<Index>{i}));
     EXPECT_EQ(islands.list()[i].constraints.size(), i == 0 || i == 3 ? 1u : 0u);
   }
-  list = {contact(assembly, {0, 1}), contact(assembly, {1, 2}), contact(assembly, {2, 3})};
+  list =
+      carom_test::set_of({contact(assembly, {0, 1}), contact(assembly, {1, 2}), contact(assembly, {2, 3})});
   find(islands, alone, list);
   ASSERT_EQ(islands.list().size(), 1u);
   EXPECT_EQ(islands.list()[0].constraints.size(), 3u);
@@ -90,7 +97,8 @@ std::vector<std::vector<Index>> found(StepIslands& islands, std::span<const Rang
                                       std::span<const JoinedNodes> joined) {
   const std::span<const Index> order = islands.find(batches, joined);
   std::vector<std::vector<Index>> out{{order.begin(), order.end()}};
-  std::vector<Constraint> constraints(joined.size());
+  ConstraintSet constraints;
+  constraints.resize(joined.size());
   islands.take(constraints);
   for (const StepIsland& island : islands.list()) {
     out.push_back(components(island));
@@ -122,7 +130,7 @@ TEST(StepIslands, BatchesStayTogetherUnlessConstraintsJoin) {
   const Assembly assembly(std::move(system));
   ASSERT_EQ(assembly.batches().size(), 1u);
   StepIslands islands(assembly);
-  std::vector<Constraint> list{contact(assembly, {1}), contact(assembly, {4})};
+  ConstraintSet list = carom_test::set_of({contact(assembly, {1}), contact(assembly, {4})});
   find(islands, assembly.batches(), list);
   ASSERT_EQ(islands.list().size(), 1u);
   EXPECT_EQ(islands.list()[0].components.size(), 6u);
@@ -130,7 +138,8 @@ TEST(StepIslands, BatchesStayTogetherUnlessConstraintsJoin) {
   ASSERT_EQ(islands.list()[0].batches.size(), 1u);
   EXPECT_EQ(islands.list()[0].batches[0].size(), 6u);
 
-  list = {contact(assembly, {1}), contact(assembly, {2, 4}), contact(assembly, {3}), contact(assembly, {5})};
+  list = carom_test::set_of(
+      {contact(assembly, {1}), contact(assembly, {2, 4}), contact(assembly, {3}), contact(assembly, {5})});
   find(islands, assembly.batches(), list);
   ASSERT_EQ(islands.list().size(), 3u);
   EXPECT_EQ(components(islands.list()[0]), (std::vector<Index>{0, 1}));
@@ -193,7 +202,7 @@ struct HandMadeStep {
     parts.trial.begin(in, companion.history);
     iteration.use(Iteration::fixed_point);
   }
-  const std::vector<double>& solve(std::vector<Constraint>& constraints) {
+  const std::vector<double>& solve(ConstraintSet& constraints) {
     FixedPointJudge judge(1e-15, 200);
     static_cast<void>(iteration.solve({members, constraints}, in, judge));
     return parts.trial.end.v;
@@ -213,8 +222,8 @@ TEST(StepIslands, SeveralComponentsAreSolvedAsOne) {
   HandMadeStep joined(two_pairs(false)), whole(two_pairs(true));
   ASSERT_EQ(joined.assembly.components().size(), 2u);
   ASSERT_EQ(whole.assembly.components().size(), 1u);
-  std::vector<Constraint> between{contact(joined.assembly, {2, 1})};
-  std::vector<Constraint> within{contact(whole.assembly, {2, 1})};
+  ConstraintSet between = carom_test::set_of({contact(joined.assembly, {2, 1})});
+  ConstraintSet within = carom_test::set_of({contact(whole.assembly, {2, 1})});
   const std::vector<double>& v = joined.solve(between);
   const std::vector<double>& expected = whole.solve(within);
   // Sums of two numbers in the same order, iterated until nothing changes.
@@ -230,7 +239,7 @@ TEST(StepIslands, SeveralComponentsAreSolvedAsOne) {
 
 TEST(StepIslands, WithoutTheConstraintComponentsDoNotSeeEachOther) {
   HandMadeStep step(two_pairs(false));
-  std::vector<Constraint> none;
+  ConstraintSet none;
   const std::vector<double> apart = step.solve(none);
   EXPECT_NEAR(1.0 * apart[0] + 1.5 * apart[2], 1.0 * 2.0 + 1.5 * 2.0, 1e-13);
 }
@@ -246,7 +255,7 @@ TEST(StepIslands, ComponentsWithJointsAreSolvedTogether) {
     system.add(Revolute{.from = {ground, {x, 0.0}}, .to = {bar, {0.0, 0.5}}});
   }
   HandMadeStep step(std::move(system));
-  std::vector<Constraint> between{contact(step.assembly, {1, 0})};
+  ConstraintSet between = carom_test::set_of({contact(step.assembly, {1, 0})});
   const double before = between[0].velocity(0, step.state.v.data());
   ASSERT_LT(before, 0.0);
   const std::vector<double>& v = step.solve(between);
@@ -274,21 +283,23 @@ TEST(StepIslands, ConstraintsAcrossBlocksAreStaged) {
   constexpr int links = 3000;
   HandMadeStep step(chain(links));
   ASSERT_GT(step.assembly.components()[0].blocks.size(), 2u);
-  const auto state = [&](std::vector<Constraint>& list) {
+  const auto state = [&](ConstraintSet& list) {
     step.parts.contacts.state_problems(step.in, {step.members, list}, false, step.parts.trial);
   };
-  std::vector<Constraint> within{contact(step.assembly, {1, 0}), contact(step.assembly, {links - 1})};
+  ConstraintSet within =
+      carom_test::set_of({contact(step.assembly, {1, 0}), contact(step.assembly, {links - 1})});
   state(within);
   EXPECT_TRUE(step.parts.contacts.by_block());
   EXPECT_EQ(step.parts.contacts.problems().size(), 2u);
   EXPECT_FALSE(step.parts.contacts.touches(1));
-  std::vector<Constraint> across{contact(step.assembly, {0, links - 1}), contact(step.assembly, {7})};
+  ConstraintSet across =
+      carom_test::set_of({contact(step.assembly, {0, links - 1}), contact(step.assembly, {7})});
   state(across);
   EXPECT_FALSE(step.parts.contacts.by_block());
   EXPECT_TRUE(step.parts.contacts.touches(1));
   // The last link, at -1 m/s, is hit by nothing; the first, at 3 m/s to the right of it, parts from it: the
   // other way round they meet at 4 m/s.
-  across = {contact(step.assembly, {links - 1, 0}), contact(step.assembly, {7})};
+  across = carom_test::set_of({contact(step.assembly, {links - 1, 0}), contact(step.assembly, {7})});
   const std::vector<double>& v = step.solve(across);
   EXPECT_NEAR(v[2 * (links - 1)] - v[0], 0.5 * 4.0, 1e-13);
 }
