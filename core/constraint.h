@@ -147,11 +147,12 @@ struct ConstraintHead {
   /// Makes it as by default. Room for rows stays.
   void clear() { *this = {}; }
   /// Makes it ready for a contact, whatever it was: what not every contact writes is as made by default. Key,
-  /// law, friction, gap, bodies and rows are to be written.
+  /// law, friction and gap are to be written, bodies and rows to be added.
   void start_contact() {
     if (type != ConstraintType::contact) return clear();
     drift = surface_velocity = surface_velocity_after = {};  // of a contact the rest is as made by default
     allowed_approach = 0.0;
+    clear_bodies();
   }
   /// True if its rows turn: velocities along them change although those of the bodies do not. \param step of
   /// how long [s] \param negligible motion by that over the step that does not count [m]
