@@ -54,7 +54,8 @@ struct CrossCheck {
   /// where the modes agree to rounding. Across impacts order 1 is expected, in the mean over several steps;
   /// smooth motion has order 2. Outliers are left out.
   double position_order = std::numeric_limits<double>::quiet_NaN();
-  double velocity_order = std::numeric_limits<double>::quiet_NaN();  ///< likewise
+  /// Order of the velocity error, as position_order.
+  double velocity_order = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// `count` step lengths from `largest` to about `smallest`, evenly spread in the logarithm except for shifts

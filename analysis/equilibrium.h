@@ -74,8 +74,8 @@ struct Equilibrium {
 ///  - if a contact would have to pull, would slip, or an open one would be penetrated.
 [[nodiscard]] CAROM_API Equilibrium find_equilibrium(const Assembly& assembly, const State& start,
                                                      const EquilibriumOptions& options = {});
-/// The same from the described positions, at time 0. A Simulation accepts states of its own assembly only:
-/// for that, pass its assembly() and state().
+/// Computes an equilibrium near the described positions, at time 0; throws as the function for a state. A
+/// Simulation accepts states of its own assembly only: for that, pass its assembly() and state().
 [[nodiscard]] CAROM_API Equilibrium find_equilibrium(const System& system,
                                                      const EquilibriumOptions& options = {});
 

@@ -64,7 +64,8 @@ struct VibrationMode {
 /// motion. Else: one for every conjugate pair and every real eigenvalue. Throws SolverError where eigenvalues
 /// are not found.
 [[nodiscard]] CAROM_API std::vector<VibrationMode> find_modes(const Linearisation& linearisation);
-/// The same for linearise(assembly, state, options), whose errors it throws.
+/// Modes of linearise(assembly, state, options), by the size of their eigenvalues; throws the errors of that
+/// and of the function for a linearisation.
 [[nodiscard]] CAROM_API std::vector<VibrationMode> find_modes(const Assembly& assembly, const State& state,
                                                               const ModesOptions& options = {});
 

@@ -65,7 +65,7 @@ public:
   void update(const StateView& at, const Evaluation& evaluation, const Eigen::VectorXd& lengths);
   /// Displacements of all supports along their tangents.
   [[nodiscard]] std::vector<std::array<double, 2>> slid() const;
-  /// Sets them.
+  /// Sets the displacements of all supports along their tangents.
   void set_slid(const std::vector<std::array<double, 2>>& slid);
   /// True if a support sticks.
   [[nodiscard]] bool sticks() const;

@@ -46,10 +46,10 @@ void time_steps(benchmark::State& state, const scenes::Discs& discs, const carom
 
 constexpr double falling = 0.4;  // time from which on steps are timed [s]
 
-/// Likewise at rest. In a wide pile the last loose discs stop late, each of which upsets the forces, and it
-/// takes these many steps to find their equilibrium: until then steps use up their sweeps, and go on where
-/// the last one stopped. With a residual of 1e-8 that lasts for 1.3 s of 100 discs, 1.6 s of 500, 2.1 s of
-/// 2,000, 4.1 s of 10,000.
+/// Time from which on steps of the pile at rest are timed [s]. In a wide pile the last loose discs stop late,
+/// each of which upsets the forces, and it takes these many steps to find their equilibrium: until then steps
+/// use up their sweeps, and go on where the last one stopped. With a residual of 1e-8 that lasts for 1.3 s of
+/// 100 discs, 1.6 s of 500, 2.1 s of 2,000, 4.1 s of 10,000.
 double at_rest(int count) { return count <= 2000 ? 3.0 : 4.5; }
 
 int count_of(const benchmark::State& state) { return static_cast<int>(state.range(0)); }

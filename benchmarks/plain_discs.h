@@ -26,7 +26,7 @@ struct PlainDiscs {
 /// One step of the trapezoidal rule with carried rounding, v += h F/m, q += h (v0 + v)/2, and its account:
 /// kinetic and potential energy, work of the loads. No contact. Compiled as the library is.
 void plain_step(PlainDiscs& discs, double step);
-/// The same, and the least height over the floor.
+/// One step of the trapezoidal rule with carried rounding, its account, and the least height over the floor.
 void plain_step_with_gaps(PlainDiscs& discs, double radius, double step);
 
 }  // namespace benchmarks

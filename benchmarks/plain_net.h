@@ -34,11 +34,13 @@ struct PlainNet {
 void plain_forces(PlainNet& net);
 /// Forces, then v += h F/m, q += h v: one explicit step.
 void plain_sweep(PlainNet& net, double step);
-/// The same with AVX2 and FMA allowed.
+/// One explicit step: forces, then v += h F/m, q += h v. AVX2 and FMA are allowed.
 void plain_sweep_avx2(PlainNet& net, double step);
-/// The same, springs in blocks so that root and division run on four springs at once.
+/// One explicit step: forces, then v += h F/m, q += h v. AVX2 and FMA are allowed, and springs are in blocks
+/// so that root and division run on four springs at once.
 void plain_sweep_blocked_avx2(PlainNet& net, double step);
-/// The same, springs in blocks, for the instruction set of the library.
+/// One explicit step: forces, then v += h F/m, q += h v. Springs are in blocks, for the instruction set of
+/// the library.
 void plain_sweep_blocked(PlainNet& net, double step);
 /// One step of the trapezoidal rule, sweeps until the next one would change positions and h times velocities
 /// by less than `tolerance` [m]; forces at its end are guessed from those of the last three. No contact, no

@@ -61,13 +61,14 @@ namespace planar {
 ///     m = sum m_i,   centre = sum m_i c_i / m,   I = sum (I_i + m_i |c_i - centre|^2).
 /// Throws ModelError if there is no part or a part is invalid.
 [[nodiscard]] CAROM_API MassProperties<2> compose(std::span<const MassProperties<2>> parts);
-/// The same for a list: compose({rod(2.0, 1.0), shifted(disc(1.0, 0.1), {0.5, 0.0})}).
+/// One body composed of the parts of a list. Throws ModelError if there is none or one is invalid. Example:
+/// compose({rod(2.0, 1.0), shifted(disc(1.0, 0.1), {0.5, 0.0})}).
 [[nodiscard]] CAROM_API MassProperties<2> compose(std::initializer_list<MassProperties<2>> parts);
 
-/// The same body at another place in its frame: the centre moved by `offset` [m].
+/// A body at another place in its frame: the centre moved by `offset` [m].
 [[nodiscard]] CAROM_API MassProperties<2> shifted(const MassProperties<2>& properties, const Vec<2>& offset);
-/// The same body with its centre at the origin, as RigidBody demands. Shapes described in the old frame must
-/// be shifted by minus the old centre.
+/// A body with its centre at the origin, as RigidBody demands. Shapes described in the old frame must be
+/// shifted by minus the old centre.
 [[nodiscard]] CAROM_API MassProperties<2> centred(const MassProperties<2>& properties);
 /// Moment of inertia about a point [kg m^2]: I + m |point - centre|^2 (parallel axes). \param point [m]
 [[nodiscard]] CAROM_API double inertia_about(const MassProperties<2>& properties, const Vec<2>& point);

@@ -35,7 +35,7 @@ struct CAROM_API ActiveSetMemory {
   std::vector<Index> last;          ///< by contact: the last one of its island
   // Of the group at hand:
   std::vector<ContactPivot::Row> rows;
-  std::vector<ImpulseDirection> directions;  ///< of the same
+  std::vector<ImpulseDirection> directions;  ///< columns of the equations of the group
   Delassus delassus;
   FullPivoting factors;         ///< of G B D
   std::vector<double> unknown;  ///< right side, then lambda

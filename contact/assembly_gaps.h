@@ -27,12 +27,12 @@ struct MovableBodies {
   Range components;            ///< consecutive; with contacts of bodies all that these may touch
   /// Joints of those components that have some, ascending.
   std::span<JointConstraints* const> joints{};
-  std::span<const Constraint> taking_part{};  ///< contacts whose gaps are to be opened,
-  bool all = false;                           ///< or those of all, which a displacement closes included
+  std::span<const Constraint> taking_part{};  ///< contacts whose gaps are to be opened
+  bool all = false;                           ///< all gaps, those that a displacement closes included
   bool touch = false;                         ///< contacts of bodies with each other take part
 };
 
-/// Their gaps. Keeps memory.
+/// Gaps of the contacts of movable bodies. Keeps memory.
 class CAROM_API AssemblyGaps final : public GapSource {
 public:
   /// Takes bodies and where they are. The state and the position group of `evaluation`, up to date now,

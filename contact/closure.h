@@ -22,16 +22,16 @@ namespace carom {
 /// What is to be closed, and where it stands.
 struct ClosureInput {
   const Assembly& assembly;
-  std::span<const Index> components;          ///< those that may move, ascending
-  std::span<JointConstraints* const> joints;  ///< of those that have some; factored at the state
-  ActiveSet& contacts;                        ///< closed ones with their modes, brought to the state
+  std::span<const Index> components;          ///< components that may move, ascending
+  std::span<JointConstraints* const> joints;  ///< of the components that have joints; factored at the state
+  ActiveSet& contacts;                        ///< closed contacts with their modes, brought to the state
   StateView state;                            ///< q and v of the model
-  const double* force = nullptr;              ///< loads over all velocities there [N, N m]
+  const double* force = nullptr;              ///< loads over all velocities at the state [N, N m]
 };
 
 /// What a closure changed.
 struct Closure {
-  bool changed = false;  ///< anything
+  bool changed = false;  ///< true if anything has changed
   /// Energy taken out [J]; the potential changes by minus the work of its forces, to first order: the rest is
   /// the square of rounding.
   double lost = 0.0;
@@ -44,9 +44,9 @@ struct Closure {
 struct CAROM_API ClosureMemory {
   explicit ClosureMemory(const Assembly& assembly);
 
-  std::vector<double> of_position;  ///< changes that close all: of places [m, rad],
-  std::vector<double> of_velocity;  ///< of velocities [m/s, rad/s]
-  std::vector<double> momentum;     ///< M times these
+  std::vector<double> of_position;  ///< changes of places that close all [m, rad]
+  std::vector<double> of_velocity;  ///< changes of velocities that close all [m/s, rad/s]
+  std::vector<double> momentum;     ///< M times `of_velocity`
   std::vector<double> lengths;      ///< Assembly::length_scales()
   std::vector<double> rates;        ///< of the rows of joints
 };

@@ -12,7 +12,7 @@ namespace carom {
 /// Point and normal of a contact. Of a constraint that is none both are 0.
 struct PointOfContact {
   std::array<double, 3> point{};   ///< where the first body is touched [m]
-  std::array<double, 3> normal{};  ///< unit vector towards it
+  std::array<double, 3> normal{};  ///< unit vector towards the first body
 };
 
 /// Where a contact touches: the lever r of the first body follows from its rows, n x r = -r.t, t x r = r.n.
@@ -34,7 +34,8 @@ inline void find_point_of_contact(const Constraint& at, const double* centre, st
   point = {centre[0], centre[1], centre[2]};
 }
 
-/// The same as a value.
+/// Point and normal of a contact, as find_point_of_contact() writes them; zero of a constraint that is no
+/// contact.
 [[nodiscard]] inline PointOfContact point_of_contact(const Constraint& at, const double* centre) {
   PointOfContact out;
   find_point_of_contact(at, centre, out.point, out.normal);

@@ -35,7 +35,8 @@ namespace carom {
           t[0] * a[0] + t[1] * a[1] + t[2] * a[2] + t[3] * b[0] + t[4] * b[1] + t[5] * b[2]};
 }
 
-/// Constraint::velocity_after() of all rows, likewise. \param after velocities of all bodies
+/// Constraint::velocity_after() of all rows [m/s]; numbers beyond the rows are 0. \param after velocities of
+/// all bodies
 [[nodiscard]] inline std::array<double, 3> velocities_after(const Constraint& at, const double* after) {
   if (at.rows == 2) {
     const std::array<double, 2> both = times_both_rows(at, after);
@@ -48,7 +49,7 @@ namespace carom {
   return all;
 }
 
-/// Constraint::speed() of row 0 and row 1, likewise.
+/// Constraint::speed() of row 0 and row 1 [m/s]. \param velocities of all bodies
 [[nodiscard]] inline std::array<double, 2> speeds_of_both_rows(const Constraint& at,
                                                                const double* velocities) {
   constexpr int of_planar_body = 3;

@@ -33,8 +33,9 @@ class CAROM_API Delassus {
 public:
   /// Takes the responses of the bodies to unit impulses along the columns. \param directions must outlive it
   void build(std::span<const ImpulseDirection> directions, BodyResponse& response);
-  /// Likewise of one planar contact of one body that turns and answers for itself, the usual impact, with W
-  /// at once; else false, and nothing is made. \param directions both rows of one constraint, as they are
+  /// Takes the response of the body of one planar contact, the usual impact, and writes W at once: true where
+  /// the contact has one body, which turns and which nothing couples to others. Otherwise false, and nothing
+  /// is made. \param directions both rows of one constraint, as they are
   /// \param matrix out: W, as write_symmetric() gives it
   [[nodiscard]] bool build_of_one_contact(std::span<const ImpulseDirection> directions,
                                           const BodyResponse& response, double* matrix);
@@ -62,7 +63,7 @@ public:
   /// Writes W, symmetric, row-major: the lower triangle, mirrored; rows and columns of what is held are zero.
   /// Without ratios and levers only. \param matrix size() * size() numbers
   void write_symmetric(double* matrix) const;
-  /// Writes W with its columns as they are. \param matrix likewise
+  /// Writes W, row-major, with its columns as they are. \param matrix size() * size() numbers
   void write(double* matrix) const;
   /// x += scale B D^T P. \param x velocities of all bodies
   void add_response(std::span<const double> impulses, double* x, double scale = 1.0) const;

@@ -20,16 +20,16 @@ namespace carom {
 /// One problem of contacts with friction in joints. All members must outlive the calls.
 struct FrictionBoundProblem {
   IslandProblem& problem;
-  std::span<Constraint> contacts;  ///< those of the problem
+  std::span<Constraint> contacts;  ///< contacts of the problem
   FrictionBounds& bounds;          ///< of friction in the joints
   JointView at;                    ///< where forces of joints are looked at
   double duration = 1.0;           ///< as for FrictionBounds::take() [s]
-  double size = 0.0;               ///< likewise
+  double size = 0.0;               ///< of loads, as for FrictionBounds::take()
   /// Multipliers of all rows of the joints under the impulses that the problem has.
   std::function<const double*()> multipliers;
 };
 
-/// Solves such problems, with memory that is kept.
+/// Solves problems of contacts with friction in joints. Keeps its memory.
 class CAROM_API FrictionBoundSolver {
 public:
   /// Solves, and repeats with the bounds that follow until these stay. Forces of joints are those of the

@@ -43,10 +43,10 @@ public:
     if (!std::is_sorted(names_.begin(), names_.end())) bring_together(constraints);
     return list_islands();
   }
-  /// Likewise of constraints that are still to be written, and are known by what they join: nothing is moved,
-  /// order() says how they have to stand.
+  /// Finds the islands of constraints that are still to be written, and are known by what they join. Nothing
+  /// is moved; order() says how the constraints have to stand.
   std::span<const Range> arrange(std::span<const JoinedNodes> constraints, Index nodes);
-  /// Numbers of the constraints of the last such call in the order of its islands.
+  /// Numbers of the constraints of the last arrange() of JoinedNodes, in the order of its islands.
   [[nodiscard]] std::span<const Index> order() const { return order_; }
 
   /// Parts all nodes; no constraints.

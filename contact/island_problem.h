@@ -51,8 +51,8 @@ public:
   /// Writes impulses from which solvers start, by row, of some constraints one behind the other.
   using SweepStart = FunctionRef<void(std::span<const Constraint> constraints, double* impulses)>;
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
-  /// forgotten; respond() is next, unless a response is given. Both throw SolverError for more constraints
-  /// than W in full has room for.
+  /// forgotten; respond() is next, unless a response is given. build() and respond() throw SolverError for
+  /// more constraints than W in full has room for.
   /// \param response makes W at once: of a large island for some constraints at a time, while these are in a
   /// near cache, which does not hold all \param start asked for all of several constraints; nothing: solvers
   /// start from zero
@@ -63,15 +63,16 @@ public:
   void respond(BodyResponse& response);
   /// Takes note of another Constraint::friction_bound of friction in a joint.
   void update_bound(std::size_t constraint);
-  /// Makes a planar contact, or friction in a joint, slip whatever its tangential velocity: P_t = ratio P_n.
-  /// Likewise rolling resistance, of whose contact P_n is.
+  /// Makes a planar contact, friction in a joint, or rolling resistance slip whatever its tangential
+  /// velocity: P_t = ratio P_n. P_n of rolling resistance is that of its contact.
   void slide(std::size_t constraint, double ratio);
   /// Solves by a law of impact other than Newton's from now on: b is that of an impact. Null: by Newton's.
   void use(ImpactSolver* solver, ImpactLaw law) { impact_ = {solver, law}; }
   /// Makes b from the velocities that the step would end with if no constraint acted, against those of the
   /// surfaces then (Constraint::velocity_after).
   void set_free_velocity(const double* velocity_free);
-  /// Likewise from velocities to which the impulses at hand have led: they remain the answer if they are one.
+  /// Makes b from the velocities that the step ends with under the present impulses, against those of the
+  /// surfaces then (Constraint::velocity_after). If these impulses are an answer, they remain one.
   void set_velocity(const double* velocity);
   /// Solves; the answer before, if there is one since build(), is where solvers start from. Where no solver
   /// has an answer, or one of impulses without measure, and plastic jams are allowed, all e are 0 from here
@@ -86,7 +87,7 @@ public:
   [[nodiscard]] const ContactProblem& problem() const { return problem_; }
   /// The constraints, in the order of build().
   [[nodiscard]] std::span<const Constraint> constraints() const { return constraints_; }
-  /// All their rows.
+  /// Rows of the constraints, in the order of build().
   [[nodiscard]] std::span<const ImpulseDirection> directions() const { return directions_; }
   /// Velocities gamma^- of all rows [m/s].
   [[nodiscard]] std::span<const double> before() const { return before_; }

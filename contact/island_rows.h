@@ -59,7 +59,7 @@ struct PlanarRows {
   RowSet* sets;
   double *before, *restitution, *given;
 
-  /// Those so many rows behind these.
+  /// The rows of another planar contact, `rows` rows behind these.
   [[nodiscard]] PlanarRows behind(std::size_t rows) const {
     return {directions + rows, sets + rows, before + rows, restitution + rows, given + rows};
   }

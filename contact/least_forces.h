@@ -14,7 +14,7 @@
 
 namespace carom {
 
-/// Finds them, with memory that is kept.
+/// Finds forces of least norm of closed contacts. Keeps its memory.
 class CAROM_API LeastForces {
 public:
   /// Forces of least norm: those of the basic solution without their part along the null vectors, and those

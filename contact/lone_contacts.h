@@ -48,7 +48,7 @@ public:
                            const LoneVelocities& velocity);
   /// The contacts.
   [[nodiscard]] std::span<const Constraint> constraints() const { return constraints_; }
-  /// Their answers.
+  /// Answers of the contacts, in the order of constraints().
   [[nodiscard]] std::span<const LoneAnswer> answers() const {
     return std::span(answers_).first(constraints_.size());
   }

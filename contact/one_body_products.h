@@ -69,7 +69,8 @@ void multiply(std::span<const ImpulseDirection> directions, const double* respon
   }
 }
 
-/// Likewise of the lower triangle, of one planar contact without loops.
+/// Products of rows and columns of one body of S velocities: the lower triangle, mirrored. The two rows of a
+/// planar contact are written out, without loops.
 template <std::size_t S>
 void multiply_symmetric(std::span<const ImpulseDirection> directions, const double* responses,
                         double* matrix) {

@@ -31,13 +31,16 @@ struct MassRange {
 /// Text that an error adds of contacts whose problem has no answer: the obstacles that move along the normal
 /// of one of them, by Constraint::surface_velocity_after, and the remedies; empty where none moves so.
 [[nodiscard]] CAROM_API std::string pressed_by(const System& system, std::span<const Constraint> contacts);
-/// Likewise of contacts whose problem is not solved, or has no answer: shapes on ground whose surfaces run
-/// along bodies, where there are two and more contacts; empty where none runs.
+/// Text that an error adds of contacts whose problem is not solved, or has no answer: the shapes on ground
+/// whose surfaces run along bodies, and the remedies, where there are two and more contacts; empty where none
+/// runs.
 [[nodiscard]] CAROM_API std::string carried_by(const System& system, std::span<const Constraint> contacts);
-/// Likewise: by how much the masses differ, where that leaves a light body between heavy ones few digits (its
-/// acceleration is the difference of forces that are as much larger); else empty.
+/// Text that an error adds of a contact problem: by how much the masses of its bodies differ, where that
+/// leaves a light body between heavy ones few digits (its acceleration is the difference of forces that are
+/// as much larger); else empty.
 [[nodiscard]] CAROM_API std::string uneven_masses(const IslandProblem& problem);
-/// Likewise of the masses of some bodies, where an error may have come of that.
+/// Text that an error adds where unequal masses may be its cause: by how much the masses of some bodies
+/// differ, where that leaves a light body between heavy ones few digits; else empty.
 [[nodiscard]] CAROM_API std::string uneven_masses(const MassRange& masses);
 
 /// Says that bounds of friction in joints and the forces that they follow from come to no end, and why.

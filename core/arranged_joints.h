@@ -39,7 +39,7 @@ private:
   std::vector<Range> slots_;                 // by component, kind
   std::vector<std::vector<Index>> serials_;  // by kind
   std::vector<Index> mechanisms_;            // by body; empty without joints
-  std::vector<char> is_jointed_;             // likewise
+  std::vector<char> is_jointed_;             // by body; empty without joints
 };
 
 }  // namespace carom

@@ -95,7 +95,8 @@ public:
     }
   }
 
-  /// The same for the bodies of a component.
+  /// Calls f(kind, slots, q, v, rotation) for each run of bodies of one kind in a component; the numbers are
+  /// the places of the first body of the run.
   template <class F>
   void for_bodies(Index component, F&& f) const {
     for_bodies(components_[component].bodies, std::forward<F>(f));

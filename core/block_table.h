@@ -57,7 +57,7 @@ public:
   [[nodiscard]] Range elements_up_to(Index block, Index kind) const {
     return elements_[block * kinds_ + kind];
   }
-  /// Those of a component that act on several runs.
+  /// Elements of a kind, in a component, that act on several runs.
   [[nodiscard]] Range bridges(Index component, Index kind) const {
     return bridges_[component * kinds_ + kind];
   }

@@ -16,20 +16,20 @@
 
 namespace carom {
 
-/// How the masses of bodies of a kind lie in memory, for loops over many of them: of body i of a range
-/// mass[stride * i], and the others likewise.
+/// How the masses of bodies of a kind lie in memory, for loops over many of them: body i of a range has
+/// mass[stride * i], inertia[stride * i] and gyration_radius[stride * i].
 struct BodyMasses {
   /// Meaning of the numbers of a body.
   enum class Layout : std::uint8_t {
     planar_points,   ///< two coordinates
-    spatial_points,  ///< three
+    spatial_points,  ///< three coordinates
     planar_bodies    ///< two coordinates and an angle
   };
   Layout layout = Layout::planar_points;    ///< of coordinates and velocities
   Index stride = 1;                         ///< 0: all bodies have the same mass
   const double* mass = nullptr;             ///< [kg]
   const double* inertia = nullptr;          ///< of bodies that turn [kg m^2]
-  const double* gyration_radius = nullptr;  ///< likewise [m]
+  const double* gyration_radius = nullptr;  ///< of bodies that turn [m]
 };
 
 /// All bodies of one kind. Slots are the places of bodies within the kind; `q` and `v` point at the numbers

@@ -178,12 +178,13 @@ public:
   explicit Constraint(RowStore& store) { room_.store = &store; }
   Constraint(const Constraint&) = delete;
   Constraint& operator=(const Constraint&) = delete;
-  /// Takes the place of another one with its room for rows.
+  /// Takes the place of another constraint with its room for rows.
   Constraint(Constraint&& other) noexcept : ConstraintHead(other), room_(other.room_) {
     assert(room_.size == 0 || room_.store != nullptr);  // a single one keeps its room
     other.room_ = {};
   }
-  /// Both exchange their room for rows, so that none is lost when members of a set change places.
+  /// Takes the numbers of another constraint, and exchanges the room for rows with it, so that none is lost
+  /// when members of a set change places.
   Constraint& operator=(Constraint&& other) noexcept {
     assert(room_.size == 0 || room_.store != nullptr);
     assert(other.room_.size == 0 || other.room_.store != nullptr);

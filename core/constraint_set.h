@@ -44,7 +44,7 @@ public:
   [[nodiscard]] std::size_t size() const { return count_; }
   /// True if there are none.
   [[nodiscard]] bool empty() const { return count_ == 0; }
-  /// All of them, as a span too. Valid until one is appended.
+  /// First of all constraints, which may be read as a span. Valid until one is appended.
   [[nodiscard]] const Constraint* begin() const { return list_.data(); }
   [[nodiscard]] Constraint* begin() { return list_.data(); }
   [[nodiscard]] const Constraint* end() const { return list_.data() + count_; }

@@ -47,11 +47,11 @@ public:
     if (ready_ && filled_ != size_) fill_slots();
   }
 
-  /// All, in the order of add().
+  /// All keys, in the order of add().
   [[nodiscard]] std::span<const ConstraintKey> keys() const { return {keys_.data(), size_}; }
   /// Place of a key; `none` if it is not among them.
   [[nodiscard]] Index find(const ConstraintKey& key) const;
-  /// Likewise, sooner where it is at a place that is likely.
+  /// Place of a key; `none` if it is not among them. Faster where the key is at the place `likely`.
   [[nodiscard]] Index find(const ConstraintKey& key, Index likely) const {
     return likely < size_ && keys_[likely] == key ? likely : find(key);
   }

@@ -25,7 +25,8 @@ CAROM_API void check_rounded_points(const PartCheck& check, std::span<const Roun
 /// Demands a convex set of finite numbers, of one vertex at least. \throws ModelError
 CAROM_API void check_outline(const PartCheck& check, const Outline& outline);
 /// Demands that the points and the outlines of a shape, where it has both, describe the same set: that it
-/// reaches as far in every direction. Both checked before. \throws ModelError
+/// reaches as far in every direction. They have passed check_rounded_points() and check_outline(). \throws
+/// ModelError
 CAROM_API void check_same_set(const PartCheck& check, std::span<const RoundedPoint> points,
                               std::span<const Outline> outlines);
 /// Demands of every piece a form, as many finite points as that has, a solid that is convex, a face with a

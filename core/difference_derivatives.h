@@ -25,9 +25,11 @@ template <class F>
 
 /// Derivatives of an element with internal variables z beside those of its loads by motion.
 struct InternalDerivatives {
-  std::vector<LoadDerivative> rates;       ///< of dz/dt by motion; rows are places in State::z
-  std::vector<LoadDerivative> loads_by_z;  ///< columns are places in State::z, numbers in `by_position`
-  std::vector<LoadDerivative> rates_by_z;  ///< rows and columns are, likewise
+  std::vector<LoadDerivative> rates;  ///< of dz/dt by motion; rows are places in State::z
+  /// Of loads by z, numbers in `by_position`; columns are places in State::z.
+  std::vector<LoadDerivative> loads_by_z;
+  /// Of dz/dt by z, numbers in `by_position`; rows and columns are places in State::z.
+  std::vector<LoadDerivative> rates_by_z;
 };
 
 /// A movable copy of a state, on which loads are evaluated beside it. Make one for many elements.
@@ -37,17 +39,18 @@ public:
 
   /// Appends the derivatives of the loads of one element, error about 1e-10 of the loads' size.
   void append(const ForceKind& kind, Index element, std::vector<LoadDerivative>& out);
-  /// Appends those of one element that have to do with its internal variables. \param z their places
+  /// Appends the derivatives of one element that have to do with its internal variables. \param z places of
+  /// these
   void append_internal(const ForceKind& kind, Index element, Range z, InternalDerivatives& out);
 
 private:
-  /// Sets bodies_ and columns_ to those of the element.
+  /// Sets bodies_ and columns_ to the bodies and columns of the element.
   void find_columns(const ForceKind& kind, Index element);
   /// The moved state, rotations of the element's bodies up to date.
   EvaluationContext moved();
   /// Loads of the element at the moved state, on columns_.
   void loads(const ForceKind& kind, Index element, std::vector<double>& out);
-  /// Rates of its internal variables there.
+  /// Rates of the internal variables of the element at the moved state.
   void internal_rates(const ForceKind& kind, Index element, Range z, std::vector<double>& out);
   /// Appends the derivatives of numbers by all of columns_. \param rows of the numbers \param evaluate writes
   /// them at the moved state

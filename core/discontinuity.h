@@ -19,7 +19,7 @@ struct Discontinuity {
   friend bool operator==(const Discontinuity&, const Discontinuity&) = default;
 };
 
-/// Those at one time, of a list in ascending order of times.
+/// Discontinuities at one time, of a list in ascending order of times.
 [[nodiscard]] inline std::span<const Discontinuity> discontinuities_at(std::span<const Discontinuity> list,
                                                                        double time) {
   const auto first = std::lower_bound(list.begin(), list.end(), time,

@@ -38,7 +38,9 @@ public:
                        const Mat<D>& by_rate) {
     opposite_forces(view_->attach(from), view_->attach(to), force, by_distance, by_rate);
   }
-  /// The same for ends whose places in the arrays are known.
+  /// The force `force` [N] at the end `to` and the opposite at the end `from`, whose places in the arrays are
+  /// known, with changes by the distance from `from` to `to` (`by_distance` [N/m]) and by its rate (`by_rate`
+  /// [N s/m]).
   void opposite_forces(const Attachment<D>& from, const Attachment<D>& to, const Vec<D>& force,
                        const Mat<D>& by_distance, const Mat<D>& by_rate) {
     const Point start(*view_, from), end(*view_, to);

@@ -24,9 +24,11 @@ public:
   void dissipative(const End<D>& end, const Vec<D>& force) { add(loads_.dissipative, end, force); }
   /// A prescribed force [N].
   void external(const End<D>& end, const Vec<D>& force) { add(loads_.external, end, force); }
-  /// Torques on a planar rigid body, likewise [N m].
+  /// A torque on a planar rigid body that is minus the gradient of potential() [N m].
   void conservative_torque(BodyId body, double torque) { add(loads_.conservative, body, torque); }
+  /// A dissipative torque on a planar rigid body: its work is never positive [N m].
   void dissipative_torque(BodyId body, double torque) { add(loads_.dissipative, body, torque); }
+  /// A prescribed torque on a planar rigid body [N m].
   void external_torque(BodyId body, double torque) { add(loads_.external, body, torque); }
 
 private:

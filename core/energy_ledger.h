@@ -21,7 +21,7 @@ public:
   void open(const StoredEnergies& stored);
   /// Books a step: the flows in the step, and the stored energies after it.
   void book(const EnergyFlows& flows, const StoredEnergies& stored);
-  /// The same of a step with one flow. \param amount [J]
+  /// Books a step with one flow, and the stored energies after it. \param amount of the flow [J]
   void book(EnergyFlow flow, double amount, const StoredEnergies& stored);
 
   /// Stored energy of one form now [J].

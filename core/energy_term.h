@@ -38,9 +38,10 @@ enum class EnergyFlow : std::uint8_t {
 /// Number of flows.
 inline constexpr std::size_t energy_flow_count = 14;
 
-/// Name of a term, as used in tables and files: "kinetic", "impact_normal", ...
+/// Name of a form of stored energy, as used in tables and files: "kinetic", ...
 [[nodiscard]] CAROM_API std::string_view to_string(StoredEnergy term);
-[[nodiscard]] CAROM_API std::string_view to_string(EnergyFlow term);  ///< likewise
+/// Name of a flow of energy, as used in tables and files: "impact_normal", ...
+[[nodiscard]] CAROM_API std::string_view to_string(EnergyFlow term);
 
 /// Throws the ModelError of a value that is no term.
 [[noreturn]] CAROM_API void refuse_term(std::size_t place, std::size_t count);

@@ -61,7 +61,7 @@ inline constexpr std::size_t trace_term_count = 16 + stored_energy_count + energ
 [[nodiscard]] CAROM_API const std::array<TraceTerm, trace_term_count>& trace_terms();
 /// Values of a row, in the order of trace_terms().
 [[nodiscard]] CAROM_API std::array<double, trace_term_count> values_of(const TraceRow& row);
-/// The row of such values.
+/// The row of some values, in the order of trace_terms().
 [[nodiscard]] CAROM_API TraceRow row_of(const std::array<double, trace_term_count>& values);
 
 /// An event at one time, e.g. an impact.

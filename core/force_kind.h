@@ -75,7 +75,7 @@ public:
 
   /// Name used in messages, e.g. "spring-damper".
   [[nodiscard]] virtual std::string_view label() const = 0;
-  /// 2 or 3, 0 if it fits both.
+  /// Dimension of the models it is for: 2 or 3, 0 if it fits both.
   [[nodiscard]] virtual int dimension() const = 0;
   /// Number of elements.
   [[nodiscard]] virtual Index size() const = 0;

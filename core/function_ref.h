@@ -28,7 +28,7 @@ public:
 
   /// True if it refers to anything.
   explicit operator bool() const { return call_ != nullptr; }
-  /// Calls it.
+  /// Calls the function.
   Result operator()(Arguments... arguments) const {
     return call_(function_, std::forward<Arguments>(arguments)...);
   }

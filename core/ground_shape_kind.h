@@ -20,7 +20,7 @@ struct PointRow {
   Index stride = 0;                ///< numbers from one to the next
   Index count = 0;                 ///< of points
 
-  /// Coordinates of one of them.
+  /// Coordinates of point i.
   [[nodiscard]] const double* point(Index i) const { return points + i * stride; }
 };
 
@@ -42,7 +42,7 @@ struct GroundMotion {
   double spin = 0.0;                     ///< [rad/s]
   double angular_acceleration = 0.0;     ///< [rad/s^2]
   bool velocity_given = false;           ///< by the user, not by differences of the place
-  bool spin_given = false;               ///< likewise
+  bool spin_given = false;               ///< by the user, not by differences of the angle
 };
 
 /// A piece of the boundary of a shape on ground in the plane. Places are measured from the point o about
@@ -59,7 +59,7 @@ struct GroundPiece {
   std::vector<Vec<2>> points{};  ///< as its form says [m]
   double radius = 0.0;           ///< of a solid's outline, or of the circle [m]
   bool tail_is_free = false;  ///< of a face: it has no neighbour at its tail, and the first point no meaning
-  bool head_is_free = false;  ///< likewise at its head
+  bool head_is_free = false;  ///< of a face: it has no neighbour at its head, and the last point no meaning
   double depth =
       std::numeric_limits<double>::infinity();  ///< of a face: how far below it the ground is solid [m]
 };
@@ -107,7 +107,8 @@ public:
     }
     return within;
   }
-  /// Likewise with moved_gap().
+  /// Which of up to 64 points moved_gap() finds at a distance <= `margin` [m], or at one that is no number:
+  /// bit i of the point number i.
   [[nodiscard]] virtual std::uint64_t points_within_moved(Index slot, const GroundMotion& motion,
                                                           const PointRow& row, double margin) const {
     std::uint64_t within = 0;

@@ -26,7 +26,9 @@ using InternalRates = FunctionRef<void(const double* z, double* rates)>;
                                                  InternalRates rates_at_end, double* z, std::size_t number,
                                                  double* memory);
 
-/// The same for N variables, in memory of its own.
+/// Solves for the N internal variables `z` at the end of a step (in: a guess), in memory of its own. Returns
+/// false if the iteration does not converge. \param step h [s] \param z0 variables at the start
+/// \param rates0 r(t0, z0) \param rates_at_end may read `z` through other ways too
 template <int N, class F>
 [[nodiscard]] bool advance_trapezoidal(double step, const double* z0, const double* rates0, F&& rates_at_end,
                                        double* z) {

@@ -28,7 +28,7 @@ struct JointView {
 /// A bilateral row g at one configuration:  dg/dt = G v + rate,  d2g/dt2 = G a + drift.
 struct JointRow {
   static constexpr int max_bodies = 3;   ///< most bodies of a row
-  static constexpr int max_columns = 3;  ///< velocities of one of them
+  static constexpr int max_columns = 3;  ///< most velocities of a body
   /// The part of G for one body.
   struct Block {
     Index v = none;   ///< first velocity of the body

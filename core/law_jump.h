@@ -18,25 +18,25 @@ namespace carom {
 struct LawPoint {
   double time = 0.0;                 ///< [s]
   std::array<double, 3> place{};     ///< [m]; a coordinate in its own unit
-  std::array<double, 3> velocity{};  ///< its rate
+  std::array<double, 3> velocity{};  ///< rate of the place
   double angle = 0.0;                ///< [rad]; where whole turns do not matter
-  double spin = 0.0;                 ///< its rate [rad/s]
+  double spin = 0.0;                 ///< rate of the angle [rad/s]
   bool velocity_given = false;       ///< by a function of its own, not from the place by differences
-  bool spin_given = false;           ///< likewise
+  bool spin_given = false;           ///< by a function of its own, not from the angle by differences
 };
 
 /// A jump that was found.
 struct LawJump {
   double time = 0.0;      ///< the last time before it [s]
   double size = 0.0;      ///< |change| of the place, or change of the angle
-  bool of_angle = false;  ///< of which
+  bool of_angle = false;  ///< true: the angle jumps; false: the place
 };
 
 /// A given rate that is not the rate of what it belongs to.
 struct FalseRate {
   double time = 0.0;      ///< [s]
-  double off = 0.0;       ///< |given rate - rate of the place|, or of the angle
-  bool of_angle = false;  ///< of which
+  double off = 0.0;       ///< |given rate - rate of the place or of the angle|
+  bool of_angle = false;  ///< true: the rate is that of the angle; false: that of the place
 };
 
 /// Part of the way that velocities may miss: two points of a law are taken as parts of a smooth motion where
@@ -49,7 +49,7 @@ inline constexpr double bent_share = 0.5;  ///< see smooth_share
 /// Smallest jump that is looked for, as part of the largest |x|: rounding of usual laws is far below.
 inline constexpr double resolved_share = 1e-9;
 
-/// True if two points of a law look like points of one smooth motion, as above.
+/// True if two points of a law look like points of one smooth motion, by the rule at smooth_share.
 [[nodiscard]] CAROM_API bool looks_smooth(const LawPoint& from, const LawPoint& to);
 
 /// Looks for a jump between two points of a law that do not look smooth: the interval is halved as long as

@@ -34,12 +34,16 @@ inline constexpr double largest_magnitude = 1e150;
 /// is finite and too large.
 [[nodiscard]] CAROM_API std::string allowed_instead(double value, std::string_view allowed);
 
-/// Text for an identity that is refused: the name of the part, and that it was removed, if it was.
+/// Text for a body that is refused: its name, and that it was removed, if it was.
 [[nodiscard]] CAROM_API std::string refused_name(const System& system, BodyId id);
-[[nodiscard]] CAROM_API std::string refused_name(const System& system, ElementId id);   ///< likewise
-[[nodiscard]] CAROM_API std::string refused_name(const System& system, JointId id);     ///< likewise
-[[nodiscard]] CAROM_API std::string refused_name(const System& system, ShapeId id);     ///< likewise
-[[nodiscard]] CAROM_API std::string refused_name(const System& system, ObstacleId id);  ///< likewise
+/// Text for a force element that is refused: its name, and that it was removed, if it was.
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, ElementId id);
+/// Text for a joint that is refused: its name, and that it was removed, if it was.
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, JointId id);
+/// Text for a shape that is refused: its name, and that it was removed, if it was.
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, ShapeId id);
+/// Text for a shape on ground that is refused: its name, and that it was removed, if it was.
+[[nodiscard]] CAROM_API std::string refused_name(const System& system, ObstacleId id);
 
 /// Checks one part. `part` is the text by which messages name it, e.g. "particle 'upper'".
 class CAROM_API PartCheck {
@@ -54,9 +58,9 @@ public:
   /// Throws the ModelError "<part>: <quantity> is <value>; allowed: <allowed>".
   [[noreturn]] void refuse(std::string_view quantity, std::string_view value, std::string_view allowed) const;
 
-  /// Demands a finite number; as all others not above largest_magnitude in magnitude.
+  /// Demands a finite number of a magnitude up to largest_magnitude.
   void finite(double value, std::string_view quantity, std::string_view unit) const;
-  /// Demands finite numbers, likewise.
+  /// Demands finite numbers of a magnitude up to largest_magnitude.
   void finite(std::span<const double> values, std::string_view quantity, std::string_view unit) const;
   /// Demands a finite number > 0.
   void positive(double value, std::string_view quantity, std::string_view unit) const;

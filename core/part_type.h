@@ -22,7 +22,7 @@ struct PartType {
   /// Stores a part of this type in its kind. Throws ModelError.
   void (*store)(K& of_type, const void* part, const PartCheck& check);
 
-  /// That of a part whose kind is `Concrete`.
+  /// Type of a part whose kind is `Concrete`.
   template <class Concrete, class Description>
   [[nodiscard]] static PartType of() {
     return {&typeid(Concrete), Concrete::part_label(), Concrete::part_dimension(),

@@ -32,7 +32,7 @@ template <int D>
   for (int i = 0; i < D; ++i) vector.data()[i] = value;
   return vector;
 }
-/// Likewise a matrix.
+/// A square matrix of equal numbers, as a default of members.
 template <int D>
 [[nodiscard]] Mat<D> filled_matrix(double value) {
   Mat<D> matrix;

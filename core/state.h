@@ -55,7 +55,7 @@ public:
   /// Coordinate of a joint [rad, m], `to` relative to `from`, as defined by the joint. Throws ModelError for
   /// a joint that is not of this model or has none.
   [[nodiscard]] double coordinate(JointId joint) const;
-  /// Its rate [rad/s, m/s]. Throws as coordinate().
+  /// Rate of the coordinate of a joint [rad/s, m/s]. Throws as coordinate().
   [[nodiscard]] double rate(JointId joint) const;
 
   /// Internal variables of an element, in the order and units that it documents. Throws ModelError for an

@@ -27,8 +27,8 @@ class Registry;
 /// Whether shapes of two bodies may touch, as decided (System::allow_contact()).
 struct ContactDecision {
   BodyId a{};            ///< added before the other one
-  BodyId b{};            ///< the other
-  bool allowed = false;  ///< whether they may
+  BodyId b{};            ///< the other body
+  bool allowed = false;  ///< whether their shapes may touch
 };
 
 /// Describes a model; it has no state. Parts are checked when they are added. Copies are independent and keep
@@ -86,7 +86,8 @@ public:
   /// a joint binds both bodies. Throws ModelError for a body that is not of this system, and for the same
   /// twice. \param allowed empty: undecided again
   void allow_contact(BodyId a, BodyId b, std::optional<bool> allowed = true);
-  /// As decided; empty if it is not. Throws ModelError likewise.
+  /// Whether shapes of two bodies may touch, as decided by allow_contact(); empty if it is undecided. Throws
+  /// ModelError for a body that is not of this system, and for one body named twice.
   [[nodiscard]] std::optional<bool> is_contact_allowed(BodyId a, BodyId b) const;
   /// All decisions, in the order of their bodies.
   [[nodiscard]] std::vector<ContactDecision> contact_decisions() const;

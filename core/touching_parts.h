@@ -32,7 +32,7 @@ struct Toucher {
 struct Touching {
   std::vector<Toucher> kinds;         ///< by material and filter
   std::vector<std::string> intended;  ///< shapes, and particles with a material: made to touch something
-  bool any = false;                   ///< there is something
+  bool any = false;                   ///< some body has a part that can touch
 };
 
 /// Name of a material in a finding: "material 'steel'", or "no material".

@@ -23,7 +23,7 @@ public:
   CallbackId add_observer(Observer observer);
   /// Adds an action behind the others. Its rhythm is the next of Companion::rhythms.
   CallbackId add_action(Action action);
-  /// Removes one, with its rhythm. False if it is not there.
+  /// Removes an observer, or an action with its rhythm. False if it is not there.
   [[nodiscard]] bool remove(const CallbackId& id, std::vector<Rhythm>& rhythms);
 
   /// True if there is an observer.
@@ -32,7 +32,8 @@ public:
   /// `thrown`.
   void call_observers(const Simulation& simulation, CallGuard& guard,
                       std::vector<std::exception_ptr>& thrown);
-  /// Likewise the actions that are due, once each. \param is_due called with a rhythm
+  /// Calls the actions that are due, once each. An exception of one does not keep the others from their call;
+  /// it is added to `thrown`. \param is_due called with a rhythm
   template <class IsDue>
   void call_actions(Simulation& simulation, std::vector<Rhythm>& rhythms, CallGuard& guard,
                     std::vector<std::exception_ptr>& thrown, IsDue&& is_due) {

@@ -53,7 +53,8 @@ void for_statistics(S& s, int version, F&& f) {
   f(s.flow_restarts);
 }
 
-/// Likewise those of the contact solvers. Version 6 has none of large problems, whose solver is the last.
+/// The numbers of the statistics of the contact solvers, in the order in which they are saved. \param version
+/// of the checkpoint; version 6 has none of large problems, whose solver is the last
 template <class S, class F>
 void for_contact_statistics(S& s, int version, F&& f) {
   const bool large = version >= 7;

@@ -14,8 +14,9 @@ namespace carom {
 /// True if a step of time stepping has records of several parts: two halves of step control, or parts between
 /// closings. The directions of one contact then differ by what turns within the step.
 [[nodiscard]] CAROM_API bool is_parted(const StepReport& report);
-/// Mean forces of the contacts and limits of such a step that last, one for each, those of impacts left out;
-/// in the order of their first records, with the places of their last ones.
+/// Mean forces of the contacts and limits that last in a step of time stepping, one for each, those of
+/// impacts left out; in the order of their first records, with the places of their last ones where
+/// is_parted().
 [[nodiscard]] CAROM_API std::vector<LastingContact> forces_of_step(const StepReport& report);
 
 }  // namespace carom

@@ -45,7 +45,7 @@ struct ModeMachines {
   void advance_unseen(const Run& run, double limit);
 
   std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode
-  std::unique_ptr<StepController> controller;  ///< likewise
+  std::unique_ptr<StepController> controller;  ///< null in the event-driven mode
   std::unique_ptr<PartedSteps> parted;         ///< null where no step has to be parted
   std::unique_ptr<EventDriver> driver;         ///< null in time stepping
   const StopRequest* stop;                     ///< asked within steps

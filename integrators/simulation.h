@@ -51,8 +51,10 @@ public:
   /// ModelError for an invalid model or option, and in the event-driven mode for bodies deeper in shapes on
   /// ground than EventDriven::gap_tolerance; so do edit() and set_state().
   Simulation(System system, Mode mode);
-  /// The same; the variant is made in the library.
+  /// Assembles `system` for time stepping, as Simulation(System, Mode); the variant is made in the library.
   Simulation(System system, const TimeStepping& mode);
+  /// Assembles `system` for the event-driven mode, as Simulation(System, Mode); the variant is made in the
+  /// library.
   Simulation(System system, const EventDriven& mode);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -139,9 +141,9 @@ public:
   /// Name of a contact: "particle 'lower' on half-plane #0". Parts that were removed since keep their names;
   /// of a key made by default "no contact". Throws ModelError for a key of parts that this model never had.
   [[nodiscard]] std::string name(const ConstraintKey& key) const;
-  /// The part of an event of any kind: its contact, as above; the force element with its bodies, "cable
-  /// 'rope' between ground and particle 'ball'"; the driver or shape on ground whose law of time jumps.
-  /// Throws ModelError for parts of another model.
+  /// The part of an event of any kind: its contact, as name(ConstraintKey); the force element with its
+  /// bodies, "cable 'rope' between ground and particle 'ball'"; the driver or shape on ground whose law of
+  /// time jumps. Throws ModelError for parts of another model.
   [[nodiscard]] std::string name(const EventRecord& event) const;
 
   /// Log of warnings and notes; nothing is written until it has a sink. Whoever calls this before the first

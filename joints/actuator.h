@@ -30,8 +30,8 @@ struct CAROM_API ActuatorSlopes {
 /// The laws of an actuator as its check sees them, with their words for messages; a view.
 struct CAROM_API ActuatorLaws {
   const ActuatorLaw& law;                      ///< required
-  const ActuatorLaw& by_coordinate;            ///< its derivatives, may be empty
-  const ActuatorLaw& by_rate;                  ///< likewise
+  const ActuatorLaw& by_coordinate;            ///< derivative by the coordinate, may be empty
+  const ActuatorLaw& by_rate;                  ///< derivative by the rate, may be empty
   std::string name, unit;                      ///< of the law: "force", "N"
   std::string coordinate, unit_of_coordinate;  ///< "length", "m"
 

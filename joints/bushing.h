@@ -20,8 +20,8 @@ namespace generic {
 ///
 /// with R the rotation of `from`. The force -R (K d)_xy acts on `to` at its point, and so does the torque
 /// -(K d)_angle. The opposites act on `from`, the force at the same point of space (the point of `to`): this
-/// is the gradient of V (R turns with `from`), and moments balance. The dashpot is C times the rate of d
-/// likewise.
+/// is the gradient of V (R turns with `from`), and moments balance. The dashpot acts in the same places with
+/// C times the rate of d in the place of K d.
 template <int D>
 struct CAROM_API Bushing {
   static constexpr Role role = Role::force;
@@ -37,7 +37,7 @@ struct CAROM_API Bushing {
   End<D> to{};    ///< a rigid body or ground (required)
   /// K over (x, y, angle), symmetric, no eigenvalue < 0 [N/m, N/rad; N m/m, N m/rad]
   Mat<coordinates> stiffness = filled_matrix<coordinates>(0.0);
-  Mat<coordinates> damping = filled_matrix<coordinates>(0.0);  ///< C, likewise, times s
+  Mat<coordinates> damping = filled_matrix<coordinates>(0.0);  ///< C over (x, y, angle) [units of K, times s]
   Vec<coordinates> rest = filled<coordinates>(0.0);  ///< is subtracted from d: the unloaded state [m, m, rad]
 
   /// The bodies that it connects.

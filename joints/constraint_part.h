@@ -30,13 +30,13 @@ struct ConstraintPart {
   End<2> to{};                   ///< a body or ground
   Vec<2> axis = filled<2>(0.0);  ///< of unit length, in the fixed frame or that of `from`
   double turn_from = 0.0;        ///< coefficient of the angle of `from` [1, m]
-  double turn_to = 0.0;          ///< of `to`
+  double turn_to = 0.0;          ///< coefficient of the angle of `to` [1, m]
   BodyId carrier = ground;       ///< a third body whose angle may enter
-  double turn_carrier = 0.0;     ///< coefficient of its angle
+  double turn_carrier = 0.0;     ///< coefficient of the angle of `carrier` [1, m]
   double offset = 0.0;           ///< is subtracted [m, rad]
 };
 
-/// Demands that many constraint parts, all between the same ends.
+/// Demands `count` constraint parts, all between the same ends.
 CAROM_API void check_constraint_parts(const PartCheck& check, std::span<const ConstraintPart> constraints,
                                       Index count);
 

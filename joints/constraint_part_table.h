@@ -21,7 +21,7 @@ namespace carom::planar {
 /// depend on the points.
 class CAROM_API ConstraintPartTable {
 public:
-  /// Appends a joint. The number of constraint parts is the same for all.
+  /// Appends a joint. All joints have the same number of constraint parts.
   void add(std::span<const ConstraintPart> constraints);
   /// Removes a joint; later ones move up.
   void erase(Index joint);

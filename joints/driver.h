@@ -26,8 +26,8 @@ struct Driver {
 
   JointId joint{};                                    ///< whose coordinate (required)
   std::function<double(double time)> position{};      ///< the coordinate [rad, m] (required)
-  std::function<double(double time)> velocity{};      ///< its rate
-  std::function<double(double time)> acceleration{};  ///< and that of the rate
+  std::function<double(double time)> velocity{};      ///< rate of the coordinate
+  std::function<double(double time)> acceleration{};  ///< rate of the velocity
   /// When the velocity or acceleration jumps or a function has a kink, ascending [s]. The position is
   /// continuous: a jump of it is a SolverError.
   std::vector<double> breaks{};

@@ -49,7 +49,7 @@ public:
     slots_.clear();
     for (Index at = 0; at < parts_.size(); ++at) slots_[parts_[at].part.joint.serial] = at;
   }
-  [[nodiscard]] int dimension() const override { return 0; }  ///< likewise
+  [[nodiscard]] int dimension() const override { return 0; }  ///< 0: fits both dimensions
   [[nodiscard]] Index size() const override {
     return static_cast<Index>(parts_.size());
   }  ///< number of parts

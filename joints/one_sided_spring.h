@@ -101,7 +101,7 @@ struct OneSidedSpring {
   void guards(const ElementView<D>& at, double* out) const {
     out[0] = length_guard<D>(at, from, to, free_length);
   }
-  /// The same along the motion.
+  /// Motion of the switching value along the motion of the ends.
   void guard_motion(const ElementMotion<D>& at, GuardMotion* out) const {
     out[0] = length_guard_motion<D>(at, from, to, free_length);
   }

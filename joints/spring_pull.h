@@ -12,13 +12,13 @@ namespace carom {
 /// velocities and loads; a property is `*(property + spring * stride)`, stride 0 or 1.
 struct PlanarSprings {
   const Index* from = nullptr;          ///< first coordinate of one end
-  const Index* to = nullptr;            ///< and of the other
+  const Index* to = nullptr;            ///< first coordinate of the other end
   const double* stiffness = nullptr;    ///< [N/m]
   const double* damping = nullptr;      ///< [N s/m]
   const double* free_length = nullptr;  ///< [m]
   Index stiffness_stride = 0;           ///< stride of `stiffness`
-  Index damping_stride = 0;             ///< likewise
-  Index free_length_stride = 0;         ///< likewise
+  Index damping_stride = 0;             ///< stride of `damping`
+  Index free_length_stride = 0;         ///< stride of `free_length`
 };
 
 /// Adds the loads of springs to `spring_load` and those of dashpots to `dashpot_load`, or to the first if

@@ -29,7 +29,7 @@ struct Coordinates {
 /// more. Rounding of a run is at most 1e3 eps = 2.2e-13.
 [[nodiscard]] Verdict check_ledger_closes(const EnergyTrace& trace, double relative);
 
-/// The same for a given ledger; the verdict shows the ledger.
+/// The residual of a given ledger is at most `relative` times its largest term; the verdict shows the ledger.
 [[nodiscard]] Verdict check_ledger_closes(const EnergyLedger& ledger, double relative);
 
 /// T + V - W_external - intervention in no row lies by more than `tolerance` [J] above its least value in the

@@ -43,7 +43,7 @@ Page lcp_cases();
 
 // Smooth motion.
 Page mechanisms();
-/// The same page. \param watch sees each event-driven run of the windows before it begins
+/// The page of mechanisms. \param watch sees each event-driven run of the windows before it begins
 Page mechanisms(const std::function<void(carom::Simulation&)>& watch);
 Page springs();
 
@@ -57,7 +57,7 @@ struct Problem {
   bool quick;  ///< takes less than about half a second
 };
 
-/// All of them, in the order of the report.
+/// All problems, in the order of the report.
 inline constexpr std::array all_problems{
     Problem{"johansson_tables", johansson_tables, true},
     Problem{"johansson_horak", johansson_horak, false},

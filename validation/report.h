@@ -25,8 +25,8 @@ struct Row {
   double error = unknown;  ///< |obtained - reference|, in the quantity's unit
   double order = unknown;  ///< observed
   double cost = unknown;   ///< CPU time of all that the row tells [s]
-  /// The same at the same step under each option: the error, or the words obtained; empty if it does not
-  /// apply.
+  /// Results of the row at the same step under each option (option_count): the error, or the words obtained;
+  /// empty if it does not apply.
   std::vector<std::string> with_option;
 };
 

@@ -47,7 +47,7 @@ private:
 struct Case {
   Scene scene;
   std::string options;      ///< in words; the options as they come, or those that differ
-  bool as_it_comes = true;  ///< else tuned
+  bool as_it_comes = true;  ///< the options as they come; false: tuned
   std::function<std::unique_ptr<World>(const Scale&, int start)> make;
 };
 

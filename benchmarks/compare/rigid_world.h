@@ -42,7 +42,7 @@ public:
   virtual void add_body(Mass mass, const Body& at, const std::vector<Disc>& discs) = 0;
   virtual void add_spring(const net::Spring& spring) = 0;
   virtual void add_pin(const Pin& pin) = 0;
-  /// All is there.
+  /// Called when all planes, bodies, springs and pins have been added.
   virtual void finish() {}
 };
 

@@ -47,9 +47,9 @@ struct BodyContactSearch {
   std::vector<Vec<2>> placed;                             ///< vertices of all outlines
   std::vector<RowSide> sides;                             ///< bodies of all outlines
   std::vector<std::pair<Index, Index>> pairs;             ///< of outlines that may touch
-  std::vector<BodyTouch> touching;                        ///< of those, contacts
-  std::vector<ConstraintKey> lasting;                     ///< contacts of the step before, and
-  std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< outlines of those that are of bodies
+  std::vector<BodyTouch> touching;                        ///< contacts among `pairs`
+  std::vector<ConstraintKey> lasting;                     ///< contacts of the step before
+  std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< outlines of `lasting` that are of bodies
   SingleConstraint trial;                                 ///< of one that turning may have opened
   std::vector<Index> near;                                ///< outlines near a corner
 };
@@ -70,7 +70,7 @@ public:
   [[nodiscard]] bool empty() const { return outlines_.empty(); }
   /// Facts of the laws of all pairs.
   [[nodiscard]] const LawFacts& law_facts() const { return law_facts_; }
-  /// True if the law of such a contact has rolling resistance.
+  /// True if the law of a contact of two outlines has rolling resistance.
   [[nodiscard]] bool resists_rolling(const BodyTouch& touch) const {
     return law_facts_.rolling_resistance &&
            law(outlines_.list()[touch.a], outlines_.list()[touch.b])->resists_rolling();
@@ -83,24 +83,24 @@ public:
   /// Appends the contacts of all bodies that a query asks for, ordered by the first outline, then the second
   /// one, in the order of assembly.
   void find(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const;
-  /// The same contacts before their rows are written, for whoever brings them into another order first. Valid
-  /// as long as `memory` is left alone.
+  /// The contacts that find() would append, before their rows are written, for whoever brings them into
+  /// another order first. Valid as long as `memory` is left alone.
   [[nodiscard]] std::span<const BodyTouch> find_touching(const ContactQuery& query,
                                                          BodyContactSearch& memory) const;
-  /// Writes the contact of such outlines. \param out as made by default
+  /// Writes the contact of two outlines that touch. \param out as made by default
   void write(const BodyTouch& touch, const StateView& state, Constraint& out) const;
-  /// Likewise without its drift, of one of those that find_touching() has found last. \param out any
-  /// constraint; of the same contact only the numbers are written anew
+  /// Writes the contact of two outlines that find_touching() has found last, without its drift. \param out
+  /// any constraint; of the same contact only the numbers are written anew
   void write_rows(const BodyTouch& touch, const BodyContactSearch& memory, const StateView& state,
                   Constraint& out) const;
-  /// Law of such a pair.
+  /// Law of a pair of outlines.
   [[nodiscard]] const Surface& law(const ContactPair& pair) const {
     return *law(outlines_.list()[outlines_.outline_of(pair.feature)], outlines_.list()[pair.outline]);
   }
-  /// Both sides of such a pair.
+  /// The two sides of a pair of outlines.
   [[nodiscard]] PairSides sides(const ContactPair& pair, const StateView& state,
                                 const Evaluation& evaluation) const;
-  /// The vertex and the outline of such a pair.
+  /// The vertex and the outline of a pair of outlines.
   [[nodiscard]] OutlinePair outline_pair(const ContactPair& pair, const StateView& state,
                                          const Evaluation& evaluation) const;
 

@@ -24,7 +24,8 @@ struct BodyFeature {
   std::array<double, 3> centre{};  ///< in the body's frame, from the centre of mass [m]
   double radius = 0.0;             ///< [m]
 
-  /// That of a body which touches at its centre of mass. \param place of the body in the order of assembly
+  /// The feature of a body which touches at its centre of mass. \param place of the body in the order of
+  /// assembly
   [[nodiscard]] static BodyFeature at_centre(const BodySlot& body, Index place, Index material) {
     return {place, material, {FeatureKey::Owner::body, body.serial, 0}, {}, 0.0};
   }
@@ -73,7 +74,7 @@ public:
   [[nodiscard]] const std::vector<CentreRun>& centres() const { return centres_; }
   /// Rounded points of shapes.
   [[nodiscard]] const std::vector<BodyFeature>& points() const { return points_; }
-  /// Those of consecutive components.
+  /// Ranges of centres() and points() that consecutive components have.
   [[nodiscard]] OfComponents of(Range components) const {
     if (of_component_.empty()) return {};
     const OfComponents &first = of_component_[components.begin], &last = of_component_[components.end - 1];

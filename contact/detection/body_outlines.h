@@ -41,7 +41,7 @@ public:
   explicit BodyOutlines(const Assembly& assembly);
 
   [[nodiscard]] bool empty() const { return list_.empty(); }                    ///< true if there is none
-  [[nodiscard]] const std::vector<BodyOutline>& list() const { return list_; }  ///< all
+  [[nodiscard]] const std::vector<BodyOutline>& list() const { return list_; }  ///< all outlines
   /// Vertices of all outlines in the frames of their bodies, from the centres of mass [m].
   [[nodiscard]] std::span<const Vec<2>> vertices() const { return vertices_; }
   /// Place of the outline of a vertex.

@@ -23,7 +23,7 @@ struct CAROM_API BodyPairBound {
   double lever = 0.0;     ///< of the vertex from the centre of mass of `a` [m]
   double reach = 0.0;     ///< of the outline from that of `b`, with its rounding [m]
   double radius = 0.0;    ///< of the rounding of the vertex [m]
-  double rounding = 0.0;  ///< of both [m]; 0: the corners are sharp
+  double rounding = 0.0;  ///< sum of the vertex and the outline [m]; 0: the corners are sharp
   bool round = false;     ///< the outline has one vertex: the gap is a distance of two points less a constant
   bool central = false;   ///< the gap is a distance of two centres of mass less a constant
 

@@ -33,7 +33,7 @@ struct Box {
 /// Two boxes that overlap, first < second.
 struct BoxPair {
   Index first = none;   ///< the box of the lower index
-  Index second = none;  ///< the other
+  Index second = none;  ///< the box of the higher index
   friend constexpr auto operator<=>(const BoxPair&, const BoxPair&) = default;
 };
 

@@ -87,8 +87,8 @@ private:
   std::vector<OwnedBox<D>> entries_;  // by level and place
   std::vector<Index> begin_;          // of each place: its first entry
   std::vector<Index> place_;          // of each box, in the order of build()
-  std::vector<std::uint8_t> level_;   // likewise
-  std::vector<double> size_;          // likewise [m]
+  std::vector<std::uint8_t> level_;   // of each box, in the order of build()
+  std::vector<double> size_;          // of each box, in the order of build() [m]
 };
 
 template <int D>

@@ -17,7 +17,7 @@ namespace carom {
 /// Places bodies and ground at a state and finds what touches. Keeps memory.
 class CAROM_API ContactLook {
 public:
-  /// Both must outlive it.
+  /// \param assembly,detector must outlive it
   ContactLook(const Assembly& assembly, const Detector& detector);
 
   /// The model.

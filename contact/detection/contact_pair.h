@@ -9,8 +9,8 @@ namespace carom {
 
 /// A feature of a body and a shape on ground; a vertex of a body and an outline of another one or of a shape
 /// on ground; a vertex of such a shape and an outline of a body; or a limit of a joint, or friction in one.
-/// Likewise the rolling resistance of such a contact, which follows it in every list.
-/// Numbers are those of one Detector.
+/// The rolling resistance of such a contact is a pair too, which follows it in every list. Numbers are those
+/// of one Detector.
 struct ContactPair {
   Index body = none;            ///< in the order of assembly; of a joint the first one that it binds
   Index feature = none;         ///< `none` where the body touches at its centre, and of joints

@@ -53,12 +53,15 @@ public:
     return ground_.shapes().discontinuities();
   }
 
-  /// Appends the contacts of one component whose gap is <= `margin` [m], ordered by body, then feature, then
-  /// shape on ground; then the limits of joints. The position group of `evaluation` must be up to date.
-  /// Places the ground by itself.
+  /// Appends the contacts of one component whose gap is <= `margin` [m]: with shapes on ground without
+  /// pieces, ordered by body, then feature, then shape; with pieces, ordered by body; then the limits of
+  /// joints. The position group of `evaluation` must be up to date. Places the ground by itself.
   void find(Index component, const StateView& state, const Evaluation& evaluation, double margin,
             ConstraintSet& out) const;
-  /// Likewise with the ground at `places`, which must be of the state's time.
+  /// Appends the contacts of one component whose gap is <= `margin` [m]: with shapes on ground without
+  /// pieces, ordered by body, then feature, then shape; with pieces, ordered by body; then the limits of
+  /// joints. The position group of `evaluation` must be up to date.
+  /// \param places the ground, which must be of the state's time
   /// \param after the ground at the end of the step that begins with the state, for
   /// Constraint::surface_velocity_after; null: no time passes
   /// \param lasting contacts of the step before, found also where turning may have opened them; null: none
@@ -67,15 +70,17 @@ public:
             const LastingContacts* lasting = nullptr) const {
     find(Range{component, component + 1}, {state, evaluation, places, after, margin, lasting}, out);
   }
-  /// Likewise of a batch, or of one component.
+  /// Appends the contacts of some components with shapes on ground, and the limits of their joints, that a
+  /// query asks for: component by component where shapes on ground have pieces, otherwise all contacts before
+  /// all limits.
   void find(Range components, const ContactQuery& query, ConstraintSet& out) const;
-  /// Likewise of all components, and the contacts of bodies with each other.
+  /// Appends the contacts of all components that a query asks for, and then those of bodies with each other.
   void find_all(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const;
   /// True if bodies may touch each other.
   [[nodiscard]] bool bodies_touch() const { return !bodies_.empty(); }
   /// Contacts of bodies with each other.
   [[nodiscard]] const BodyContacts& bodies() const { return bodies_; }
-  /// Likewise the contacts of one body with shapes on ground.
+  /// Appends the contacts of one body with shapes on ground that a query asks for.
   void find_of(Index body, const ContactQuery& query, ConstraintSet& out) const {
     ground_.find_of(body, query, out);
     if (!pieces_.empty()) pieces_.find_of(body, query, out);
@@ -99,7 +104,7 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundPlaces& places, Constraint& out) const;
 
-  /// Both sides of a pair that has an outline (ContactPair::has_outline()).
+  /// The two sides of a pair that has an outline (ContactPair::has_outline()).
   [[nodiscard]] PairSides sides(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                                 const GroundPlaces& places) const;
 

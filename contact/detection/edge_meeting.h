@@ -64,7 +64,7 @@ struct FeaturePair {
   Index face_side = none, other_side = none;  ///< vertex, or the first one of an edge
 };
 
-/// Gap of such a pair. \param face_is_of_a whether a is the outline with the face
+/// Gap of a pair of features. \param face_is_of_a whether a is the outline with the face
 inline GapPoint gap_of_pair(const FeaturePair& pair, const ConvexOutline& a, const ConvexOutline& b,
                             bool face_is_of_a) {
   const Index of_a = face_is_of_a ? pair.face_side : pair.other_side;

@@ -21,7 +21,7 @@ namespace carom {
 /// Places of a chain where one face ends.
 enum class ChainCorner : std::uint8_t {
   convex,   ///< the next face turns to the left
-  flat,     ///< it goes on
+  flat,     ///< the next face goes on in one line
   free,     ///< an end of the chain, where the solid ends at a right angle
   concave,  ///< an end of the chain, where another one begins
   joined    ///< an end of the chain, where that of another shape goes on in one line

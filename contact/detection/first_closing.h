@@ -48,7 +48,7 @@ struct PathSample {
 enum class PathLook : std::uint8_t {
   between,     ///< by interpolation, where the path has one
   exact,       ///< as accurate as the motion is known
-  exact_rates  ///< of the same motion places and velocities; accelerations may be anything
+  exact_rates  ///< places and velocities as accurate as the motion is known; accelerations may be anything
 };
 
 /// The motion of both sides of a pair in a span of time.
@@ -72,7 +72,7 @@ struct ClosingRule {
   double fine = 0.0;          ///< a gap this far off a polynomial still counts as found [m]
   double level = 0.0;         ///< a gap closes where it falls below this by the noise, <= 0 [m]
   double fastest = never;     ///< bound of its rate [m/s]
-  bool flies_freely = false;  ///< both bodies: nothing but constant fields acts
+  bool flies_freely = false;  ///< nothing but constant fields acts on the two bodies
   double sixth = 0.0;    ///< of a pair without an outline, by turning: bound of its sixth derivative [m/s^6]
   double until = never;  ///< later closings are of no interest [s]
   double found = 0.0;    ///< a gap this near the level on the exact motion has closed there [m]

@@ -70,7 +70,7 @@ using SideFollowers = std::array<SideFollower, 2>;
 /// A convex set: what is behind all of some lines.
 struct SolidPiece {
   Index shape = none, piece = none;  ///< as of PieceSide
-  std::vector<GroundLine> lines;     ///< around it
+  std::vector<GroundLine> lines;     ///< around the set
   Box<2> box;                        ///< infinite of a set without bound [m]
   Index first_side = none;           ///< of a solid, whose sides follow one another; else `none`
 

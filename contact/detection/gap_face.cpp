@@ -174,7 +174,8 @@ private:
     if (edge_.height(vertex) < -depth_) return false;
     return is_this_side(head_, vertex, 1.0) && is_this_side(tail_, vertex, -1.0);
   }
-  // Likewise at one end. \param sense 1 at the head, -1 at the tail
+  // True if it is this face, and not the neighbour at one end, that a vertex stands before. \param sense 1 at
+  // the head, -1 at the tail
   [[nodiscard]] bool is_this_side(const Corner& corner, const Vec<2>& vertex, double sense) const {
     const Vec<2> from_corner = vertex - corner.at;
     const double beyond = sense * edge_.along.dot(from_corner);

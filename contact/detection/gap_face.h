@@ -30,8 +30,8 @@ enum class CornerTurn : std::uint8_t { convex, flat, concave };
 /// whose head it is.
 struct GroundFace {
   Vec<2> before, tail, head, behind;  ///< its ends, and the other ends of its neighbours [m]
-  bool tail_is_free = false;          ///< there is no neighbour: the solid ends here, at a right angle
-  bool head_is_free = false;          ///< likewise
+  bool tail_is_free = false;          ///< no neighbour at the tail: the solid ends there, at a right angle
+  bool head_is_free = false;          ///< no neighbour at the head: the solid ends there, at a right angle
   double depth = std::numeric_limits<double>::infinity();  ///< what is deeper does not touch it [m]
 };
 

@@ -30,7 +30,7 @@ struct GapPoint {
   /// that end at the other. Negative where others meet; infinite for two points or discs.
   double within = 0.0;
 
-  /// The same place with the outlines in the other order.
+  /// This gap with the outlines in the other order.
   [[nodiscard]] GapPoint swapped() const {
     const GapKind other = kind == GapKind::vertices    ? kind
                           : kind == GapKind::edge_of_a ? GapKind::edge_of_b

@@ -28,7 +28,7 @@ public:
   [[nodiscard]] std::span<const Index> touched_by(Index material) const {
     return {touched_.data() + begin_[material], touched_.data() + begin_[material + 1]};
   }
-  /// Law of a pair that may touch. \param material likewise
+  /// Law of a pair that may touch. \param material number in BodyFeatures::materials()
   [[nodiscard]] const Surface& law(Index material, Index shape) const {
     return laws_[material * shapes_ + shape];
   }

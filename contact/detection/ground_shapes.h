@@ -74,7 +74,8 @@ public:
   /// Says where the moving shapes are at a time; does nothing if `places` already says so for these shapes.
   /// Throws SolverError, naming the shape, where a prescribed motion is not finite.
   void place(double time, GroundPlaces& places) const;
-  /// Motion of a shape that moves, at a time. Throws likewise.
+  /// Motion of a shape that moves, at a time [s]. Throws SolverError, naming the shape, where the prescribed
+  /// motion is not finite.
   [[nodiscard]] GroundMotion motion(Index shape, double time) const;
   /// Motion of any shape, as place() found it.
   [[nodiscard]] const GroundMotion* motion(Index shape, const GroundPlaces& places) const {

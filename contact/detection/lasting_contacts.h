@@ -20,8 +20,8 @@ namespace carom {
 
 /// Opening of contacts that is none [m].
 struct OpeningSlack {
-  double of_all = 0.0;      ///< rounding
-  double of_pressed = 0.0;  ///< of those that pushed in the step before: errors of their answers too;
+  double of_all = 0.0;      ///< of all contacts: rounding
+  double of_pressed = 0.0;  ///< of contacts that pushed in the step before: errors of answers too;
                             ///< infinity: they last whatever their gap
 };
 
@@ -65,7 +65,7 @@ public:
 
   /// True if there are none.
   [[nodiscard]] bool empty() const { return contacts_.keys().empty(); }
-  /// All, in the order of add().
+  /// Keys of all contacts, in the order of add().
   [[nodiscard]] std::span<const ConstraintKey> keys() const { return contacts_.keys(); }
   /// True if a contact is among them.
   [[nodiscard]] bool contains(const ConstraintKey& key) const { return contacts_.find(key) != none; }

@@ -7,7 +7,7 @@
 
 namespace carom {
 
-/// True where some law has it.
+/// Facts of a set of laws: each is true where some law has it.
 struct LawFacts {
   bool static_friction = false;     ///< it takes more to slip than to slide
   bool other_impact_law = false;    ///< a law of impact that is not Newton's

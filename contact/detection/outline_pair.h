@@ -21,13 +21,13 @@ namespace carom {
 /// Frame of a body, or of a shape on ground, and how it moves.
 struct PlaneFrame {
   Vec<2> centre = Vec<2>::Zero();    ///< of mass, or the point about which a shape on ground turns [m]
-  Vec<2> velocity = Vec<2>::Zero();  ///< of that [m/s]
+  Vec<2> velocity = Vec<2>::Zero();  ///< of the centre [m/s]
   double spin = 0.0;                 ///< [rad/s]
   double cosine = 1.0, sine = 0.0;   ///< of its angle
 
-  /// That of what is at rest.
+  /// The frame of what is at rest.
   PlaneFrame() = default;
-  /// That of a body. \param evaluation position group up to date
+  /// The frame of a body. \param evaluation position group up to date
   PlaneFrame(const BodySlot& body, const StateView& state, const Evaluation& evaluation)
       : centre(state.q[body.q], state.q[body.q + 1]), velocity(state.v[body.v], state.v[body.v + 1]) {
     if (body.v_size > 2) spin = state.v[body.v + 2];
@@ -35,7 +35,7 @@ struct PlaneFrame {
     cosine = evaluation.rotation[body.rotation];
     sine = evaluation.rotation[body.rotation + 1];
   }
-  /// That of a shape on ground. \param motion null: it is at rest
+  /// The frame of a shape on ground. \param motion null: it is at rest
   explicit PlaneFrame(const GroundMotion* motion) {
     if (motion == nullptr) return;
     centre = {motion->point[0], motion->point[1]};

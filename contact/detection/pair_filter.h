@@ -27,7 +27,7 @@ public:
   explicit PairFilter(const Assembly& assembly);
 
   /// True if something of one body may touch something of another: they are two, no joint or decision parts
-  /// them, and their filters do not part all of them. The same in either order.
+  /// them, and their filters do not part all of them. The order of the two does not matter.
   [[nodiscard]] bool may_touch(Index a, Index b) const {
     return a != b && carom::may_touch(filters_[a], filters_[b]) && !is_excluded(a, b);
   }

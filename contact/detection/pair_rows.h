@@ -29,10 +29,10 @@ struct RowSide {
   Vec<2> centre = Vec<2>::Zero();  ///< centre of mass, or the point about which a shape on ground turns [m]
 };
 
-/// Likewise, and how it moves.
+/// One side of a contact: which velocities move it, and how it moves.
 struct CAROM_API PairSide : RowSide {
   double radius = 0.0;                   ///< of its outline [m]
-  Vec<2> velocity = Vec<2>::Zero();      ///< of that [m/s]
+  Vec<2> velocity = Vec<2>::Zero();      ///< of the centre [m/s]
   double spin = 0.0;                     ///< [rad/s]
   Vec<2> acceleration = Vec<2>::Zero();  ///< as prescribed, of a shape on ground; else zero [m/s^2]
   double angular_acceleration = 0.0;     ///< as prescribed, of a shape on ground; else zero [rad/s^2]

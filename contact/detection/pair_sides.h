@@ -15,15 +15,15 @@
 
 namespace carom {
 
-/// Both sides of a pair where they are. A view.
+/// The two sides of a pair where they are. A view.
 struct PairSides {
   OutlinePair at;
   PairSide of_vertex, of_outline;
   FeatureKey vertex, surface;            ///< names of the vertex, and of the outline as a whole
-  const Surface* law = nullptr;          ///< between them
+  const Surface* law = nullptr;          ///< between the two sides
   bool vertex_is_first = true;           ///< the normal of the contact points to the side of the vertex
   const GroundPieces* pieces = nullptr;  ///< of which the outline is a chain; null: it is none
-  Index chain = none;                    ///< its number among these
+  Index chain = none;                    ///< number of the chain among `pieces`
 };
 
 /// The gap of a pair at one feature of its outline (FeatureRegions), or at the nearest one (`none`), in

@@ -45,7 +45,7 @@ public:
 
   /// Appends the contacts of one component that a query asks for, ordered by body.
   void find(Index component, const ContactQuery& query, ConstraintSet& out) const;
-  /// Likewise those of one body.
+  /// Appends the contacts of one body that a query asks for.
   void find_of(Index body, const ContactQuery& query, ConstraintSet& out) const;
   /// Appends all pairs of one component that may touch, ordered by body.
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
@@ -54,7 +54,7 @@ public:
 
   /// Law of a pair.
   [[nodiscard]] const Surface& law(const ContactPair& pair) const;
-  /// Both sides of a pair. \param places of all shapes
+  /// The two sides of a pair. \param places of all shapes
   [[nodiscard]] PairSides sides(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                                 const GroundPlaces& places) const;
   /// The vertex and the outline of a pair.

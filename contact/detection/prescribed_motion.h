@@ -20,11 +20,11 @@ namespace carom::planar {
 /// too). A fingerprint cannot tell functions apart.
 struct CAROM_API PrescribedMotion {
   std::function<Vec<2>(double time)> displacement{};          ///< of o from where it is described [m]
-  std::function<Vec<2>(double time)> velocity{};              ///< its rate [m/s]
-  std::function<Vec<2>(double time)> acceleration{};          ///< and that of the velocity [m/s^2]
+  std::function<Vec<2>(double time)> velocity{};              ///< rate of the displacement [m/s]
+  std::function<Vec<2>(double time)> acceleration{};          ///< rate of the velocity [m/s^2]
   std::function<double(double time)> angle{};                 ///< from how it is described [rad]
-  std::function<double(double time)> spin{};                  ///< its rate [rad/s]
-  std::function<double(double time)> angular_acceleration{};  ///< and that of the spin [rad/s^2]
+  std::function<double(double time)> spin{};                  ///< rate of the angle [rad/s]
+  std::function<double(double time)> angular_acceleration{};  ///< rate of the spin [rad/s^2]
   /// Times at which velocities jump or functions are not smooth, ascending [s]. At a break functions are
   /// taken for what holds after it. Displacement and angle are continuous, at breaks too: a jump of them, or
   /// a rate that is not theirs, is a SolverError that names the shape and the time (core/law_jump.h).
@@ -49,7 +49,7 @@ struct NonFiniteMotion {
   double value = 0.0;              ///< the number
   const char* unit = "";           ///< its unit
 };
-/// Looks for such a number.
+/// Looks for the first number of a motion that is not finite.
 [[nodiscard]] CAROM_API NonFiniteMotion find_non_finite(const GroundMotion& motion);
 
 }  // namespace carom

@@ -14,12 +14,12 @@ namespace carom {
 template <class T, std::size_t N>
 class ShortList {
 public:
-  /// Makes it as long as that. Nothing that stood in it is kept.
+  /// Makes it `size` members long. Nothing that stood in it is kept.
   void reset(std::size_t size) {
     size_ = size;
     if (size > N) heap_.resize(size);
   }
-  /// Appends one.
+  /// Appends a member.
   void push_back(const T& value) {
     if (size_ == N) heap_.assign(few_.begin(), few_.end());
     if (size_ < N) {
@@ -30,7 +30,7 @@ public:
     }
     ++size_;
   }
-  /// All.
+  /// All members.
   [[nodiscard]] std::span<T> all() { return {size_ > N ? heap_.data() : few_.data(), size_}; }
   [[nodiscard]] std::span<const T> all() const { return {size_ > N ? heap_.data() : few_.data(), size_}; }
 

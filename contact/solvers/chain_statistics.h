@@ -23,7 +23,7 @@ enum class SolverId : std::uint8_t {
   nonlinear_cg  ///< of problems in factors only, and the only one of these
 };
 
-/// All of them, in that order.
+/// All solvers, in the order of SolverId.
 inline constexpr std::array all_solvers{SolverId::single_contact, SolverId::principal_pivoting,
                                         SolverId::lemke,          SolverId::disc_sweeps,
                                         SolverId::enumeration,    SolverId::nonlinear_cg};
@@ -31,7 +31,7 @@ inline constexpr std::array all_solvers{SolverId::single_contact, SolverId::prin
 /// Number of solvers in SolverId.
 inline constexpr std::size_t solver_count = all_solvers.size();
 
-/// Their names, in that order.
+/// Names of the solvers, in the order of SolverId.
 inline constexpr std::array<std::string_view, solver_count> solver_names{
     "single contact", "principal pivoting", "Lemke", "disc sweeps", "enumeration", "nonlinear CG"};
 

@@ -43,10 +43,12 @@ public:
   /// Empties the problem and sizes it for `rows` rows, all entries zero, all sets P >= 0.
   void reset(int rows);
 
-  /// The same for a problem in factors, which are zero then. No disc may be among its sets.
+  /// Empties the problem and sizes it for `rows` rows with W in factors of `slots` slots: all numbers zero,
+  /// all sets P >= 0. No disc may be among its sets.
   void reset_factors(int rows, int slots);
 
-  /// Likewise without slots; vector, sets and rows of the factors are still to be written.
+  /// Sizes the problem for `rows` rows with W in factors, without slots. Vector, sets and rows of the factors
+  /// keep what was there, and are to be written.
   void resize_factors(int rows);
 
   /// Whether W is given by factors().
@@ -56,7 +58,7 @@ public:
   [[nodiscard]] const ResponseFactors& factors() const { return factors_; }
   [[nodiscard]] ResponseFactors& factors() { return factors_; }
 
-  /// The same problem with W as a dense matrix.
+  /// A copy of this problem with W as a dense matrix.
   [[nodiscard]] ContactProblem dense() const;
 
   /// Number of rows.
@@ -97,7 +99,8 @@ public:
   /// share a body cancel in it. With factors plainly, by way of the velocities M^-1 H^T P.
   void velocities(std::span<const double> impulse, std::span<double> xi) const;
 
-  /// Likewise of a problem in factors, with memory to reuse. \param velocity out: M^-1 H^T P, three a slot
+  /// xi = W P + b, by way of the velocities M^-1 H^T P where the problem is in factors, with memory to reuse.
+  /// \param velocity out: M^-1 H^T P, three a slot; left alone by a dense problem
   void velocities(std::span<const double> impulse, std::span<double> xi, std::vector<double>& velocity) const;
 
   /// Writes the problem to a file in JSON (docs/contact_problems.md), every number exactly; what is said

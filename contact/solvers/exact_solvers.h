@@ -25,7 +25,7 @@ namespace carom {
 /// Answer under way: where the best one so far is written, and who has been asked.
 struct ExactAttempt {
   std::span<double> impulse, xi;  ///< of the best answer [N s], [m/s]
-  ContactReport& report;          ///< likewise
+  ContactReport& report;          ///< of the best answer
   SolverId best = SolverId::single_contact;
   SolverId last = SolverId::single_contact;  ///< asked last
   bool proved_unsolvable = false;            ///< by the last one

@@ -35,7 +35,7 @@ namespace carom {
   return sum;
 }
 
-/// The same of both rows of a contact of two slots.
+/// Entries of W on its diagonal, of the two rows of a contact of two slots.
 [[nodiscard]] inline std::array<double, 2> diagonal_of_both(const ResponseFactors& factors,
                                                             const ResponseFactors::Row* rows) {
   constexpr std::size_t columns = ResponseFactors::columns;

@@ -33,7 +33,8 @@ struct ProblemFile {
 /// Throws FileError.
 CAROM_API void save_problem(const std::string& path, const ContactProblem& problem,
                             const ProblemNotes& notes);
-/// The same without notes.
+/// Writes a problem without notes, every number exactly; an existing file is replaced only when the new one
+/// is complete. Throws FileError.
 CAROM_API void save_problem(const std::string& path, const ContactProblem& problem);
 
 /// Reads a problem and groups it. Throws FileError naming the file, the field, its value and what is allowed:

@@ -19,19 +19,19 @@ struct RegularCounts {
   std::int64_t degenerate = 0;  ///< answers that stand at a boundary between modes
   double worst_residual = 0.0;  ///< largest certificate
 
-  /// Counts one.
+  /// Counts a problem.
   void count(double residual, bool is_degenerate) {
     ++problems;
     degenerate += is_degenerate ? 1 : 0;
     worst_residual = std::max(worst_residual, residual);
   }
-  /// Adds those of others.
+  /// Adds the counts of other problems.
   void add(const RegularCounts& other) {
     problems += other.problems;
     degenerate += other.degenerate;
     worst_residual = std::max(worst_residual, other.worst_residual);
   }
-  /// Adds them to those of all solvers.
+  /// Adds the counts to those of all solvers.
   void add_to(ChainStatistics& sum) const {
     static_assert(accepted_residual <= certified_residuals[0]);
     constexpr auto id = static_cast<std::size_t>(SolverId::single_contact);

@@ -38,7 +38,7 @@ struct Residual {
 [[nodiscard]] CAROM_API Residual residual(const ContactProblem& problem, std::span<const double> impulse,
                                           std::span<const double> xi);
 
-/// The same errors, as velocities, against the free velocities alone: max over groups of
+/// Errors of the law as velocities, against the free velocities alone: max over groups of
 /// |P - proj_C(P - rho xi)|_inf / rho over max |b|. Impulses of bodies that jam can be far larger than what
 /// changes their velocities needs; this tells how well the law holds all the same. 0 where there are no
 /// errors, infinity where there are and b = 0.

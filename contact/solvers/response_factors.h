@@ -49,7 +49,7 @@ struct CAROM_API ResponseFactors {
   std::vector<Row> rows;
   Bound bound;
   double largest_trace = 0.0;  ///< of W over the rows of a group (planar_certificate.h); of a grouped problem
-  bool any_held = false;       ///< W has a zero on its diagonal; likewise
+  bool any_held = false;       ///< W has a zero on its diagonal; of a grouped problem
 
   /// Sizes the arrays, all numbers zero.
   void reset(int row_count, int slot_count);

@@ -56,7 +56,7 @@ struct PlanarSolutions {
 ///     open     b_n >= 0
 ///     stick    S+ >= 0 and S- >= 0                            P = -W^-1 b
 ///     slip+    b_n <= 0, S+ <= 0 (p+ > 0);  b_n >= 0, S+ >= 0 (p+ < 0)     P_n = -b_n / p+, P_t = -mu P_n
-///     slip-    the same with p-, S-                           P_n = -b_n / p-, P_t = +mu P_n
+///     slip-    b_n <= 0, S- <= 0 (p- > 0);  b_n >= 0, S- >= 0 (p- < 0)     P_n = -b_n / p-, P_t = +mu P_n
 /// All modes are judged by the same four numbers, so rounding cannot open a gap between two of them: for
 /// positive definite W a solution is always found. Stick is solved with twofold products where they
 /// cancel (error of a few roundings whatever the condition of W).
@@ -89,7 +89,8 @@ struct CertifiedImpulse {
 /// which is nearly every impact, with its certificate; not `usable` otherwise (solve_planar_contact()). The
 /// problem has one group, of a normal and a friction row.
 [[nodiscard]] CAROM_API CertifiedImpulse solve_regular_contact(const ContactProblem& problem);
-/// Likewise from the numbers of a contact.
+/// The solution of one planar contact, given by its numbers, where it is unique and regular
+/// (mu |W_nt| < W_nn, det W > 0, b_n not zero), with its certificate; not `usable` otherwise.
 [[nodiscard]] CAROM_API CertifiedImpulse solve_regular_contact(const PlanarContact& contact);
 
 /// Exact solver of problems with one contact: one lone row; one normal row with one friction row, of known

@@ -62,7 +62,7 @@ public:
   /// Number of solutions found: isolated ones and extreme points of sets of solutions.
   [[nodiscard]] std::size_t size() const { return count_; }
 
-  /// Number of different end velocities among them.
+  /// Number of different end velocities among the solutions.
   [[nodiscard]] std::size_t end_velocities() const { return end_velocities_; }
 
   /// Whether impulses of a solution can be increased without bound (jammed contacts).

@@ -115,8 +115,8 @@ void SolverChain::Workspace::sweep(const ContactProblem& problem, std::span<doub
   if (begin(problem, impulse, report)) large.solve(problem, impulse, xi, modes, report);
 }
 
-// Likewise; a small one by the exact solvers where the modes of the sweeps are not those of the answer. True
-// if the impulses are those that `large` has judged.
+// Sweeps a problem in factors from the impulses at hand; a small one is solved by the exact solvers where the
+// modes of the sweeps are not those of the answer. True if the impulses are those that `large` has judged.
 bool SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::span<double> impulse,
                                             ContactReport& report) {
   sweep(problem, impulse, report);

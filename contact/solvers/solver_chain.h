@@ -54,16 +54,18 @@ public:
   /// Throws std::invalid_argument when `impulse` has another size or the problem is not grouped.
   [[nodiscard]] ContactReport solve(const ContactProblem& problem, std::span<double> impulse);
 
-  /// Likewise from a start (if `solution.known`), which it replaces. Several contacts keep to the modes of
-  /// the start as long as they are those of a solution, and solvers are spared; one contact is asked for its
-  /// solution first, which costs less. Only solvers can tell that there are several solutions; the report
-  /// keeps to their word. Without a solution before, several contacts start from `solution.impulse` all the
-  /// same: where that is an answer to rounding (certified_start) no solver is asked, and sweeps over a
-  /// problem in factors start from it. \param solution `impulse` sized rows()
+  /// Solves `problem` (grouped) from the start `solution` (if `solution.known`), and replaces it by the
+  /// answer with its report and modes. Throws std::invalid_argument when the problem is not grouped. Several
+  /// contacts keep to the modes of the start as long as they are those of a solution, and solvers are spared;
+  /// one contact is asked for its solution first, which costs less. Only solvers can tell that there are
+  /// several solutions; the report keeps to their word. Without a solution before, several contacts start
+  /// from `solution.impulse` all the same: where that is an answer to rounding (certified_start) no solver is
+  /// asked, and sweeps over a problem in factors start from it. \param solution `impulse` sized rows()
   void solve(const ContactProblem& problem, ContactSolution& solution);
 
-  /// The same by one solver alone, polished and judged as in the chain. A solver that is not made for the
-  /// problem answers not_solved ("not applicable") with zero impulses. The statistics are left alone.
+  /// Solves `problem` by one solver alone and writes `impulse` [N s], polished and judged as in the chain. A
+  /// solver that is not made for the problem answers not_solved ("not applicable") with zero impulses. The
+  /// statistics are left alone.
   [[nodiscard]] ContactReport solve_with(SolverId solver, const ContactProblem& problem,
                                          std::span<double> impulse);
 

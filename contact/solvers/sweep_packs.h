@@ -65,10 +65,10 @@ public:
   /// Writes the impulses back, by row.
   void write(const ContactProblem& problem, std::span<double> impulse) const;
 
-  /// In the order in which they are visited.
+  /// Packs, in the order in which they are visited.
   [[nodiscard]] std::span<ContactPack> packs() { return {packs_.data(), pack_count_}; }
   [[nodiscard]] std::span<const ContactPack> packs() const { return {packs_.data(), pack_count_}; }
-  /// Visited behind them.
+  /// Groups that are in no pack, visited behind the packs.
   [[nodiscard]] std::span<OddGroup> odd() { return odd_; }
   [[nodiscard]] std::span<const OddGroup> odd() const { return odd_; }
   /// Slots of the problem, and one that stands for no body and does not move.

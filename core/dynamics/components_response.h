@@ -17,7 +17,7 @@ namespace carom {
 /// Appends the constraints of the joints of a component. False if they have no rows.
 CAROM_API bool append_constraints(const Assembly& assembly, Index component,
                                   std::vector<JointConstraints>& out);
-/// Their addresses, as ComponentsResponse takes them.
+/// Addresses of constraints of joints, as ComponentsResponse takes them.
 [[nodiscard]] CAROM_API std::vector<JointConstraints*> addresses_of(std::span<JointConstraints> joints);
 
 /// K of each component with joints, M^-1 of all other bodies.

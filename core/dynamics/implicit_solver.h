@@ -20,8 +20,8 @@ namespace carom {
 
 /// A number of a matrix.
 struct MatrixNumber {
-  Index row = 0, column = 0;  ///< its place
-  double number = 0.0;        ///< what stands there
+  Index row = 0, column = 0;  ///< place in the matrix
+  double number = 0.0;        ///< value at that place
 };
 
 /// Factors of A. Not for use by two threads at once.

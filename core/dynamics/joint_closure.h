@@ -24,7 +24,7 @@ struct OpenJoint {
 /// Corrections that closed the joints.
 struct JointClosure {
   double shift = 0.0;           ///< largest displacement of a body, angles times its radius of gyration [m]
-  double change = 0.0;          ///< largest change of a velocity, likewise [m/s]
+  double change = 0.0;          ///< largest change of a velocity, spins times radii of gyration [m/s]
   std::vector<OpenJoint> open;  ///< joints that were not roughly closed before (core/dynamics/open_joints.h)
 };
 

@@ -22,7 +22,7 @@ public:
 
   /// Begins a repetition.
   void begin();
-  /// Takes a bound before and after it. The same bounds in the same order in every repetition.
+  /// Takes a bound before and after a repetition. Every repetition gives the same bounds in the same order.
   void add(double before, double after);
   /// True if there is no need to go on. \param change the largest, relative
   [[nodiscard]] bool converged(double change);

@@ -25,11 +25,11 @@ struct QuantityLook {
 class CAROM_API WatchedQuantity {
 public:
   virtual ~WatchedQuantity() = default;
-  /// Its value and as many derivatives as are known.
+  /// Value of the quantity at a time, and as many derivatives as are known.
   [[nodiscard]] virtual QuantityLook look(double time) = 0;
 };
 
-/// A function of time as such a quantity.
+/// A function of time as a quantity that can be looked at anywhere in a step.
 template <class F>
 class QuantityOf final : public WatchedQuantity {
 public:

@@ -21,17 +21,18 @@ public:
   /// Eliminates, and replaces the right side by a solution: unknowns beyond the rank are zero. False if a
   /// number is not finite. \param dependent pivots below this part of the largest are rounding
   [[nodiscard]] bool solve(double dependent, std::vector<double>& right);
-  /// Likewise for another right side, with the same bits; the matrix of the last solve(), which succeeded,
-  /// was not touched.
+  /// Solves with the matrix of the last solve() for another right side, which the solution replaces, to the
+  /// bits that solve() would give. That solve() must have succeeded, and matrix() not have been touched
+  /// since. False if a number is not finite.
   [[nodiscard]] bool solve_again(std::vector<double>& right);
 
   /// Number of unknowns.
   [[nodiscard]] std::size_t size() const { return row_order_.size(); }
   /// Number of pivots.
   [[nodiscard]] std::size_t rank() const { return rank_; }
-  /// Row of the matrix that was eliminated as the k-th,
+  /// Row of the matrix that was eliminated as the k-th.
   [[nodiscard]] std::size_t row(std::size_t k) const { return row_order_[k]; }
-  /// and the unknown that it was solved for.
+  /// Unknown that was solved for when the k-th row was eliminated.
   [[nodiscard]] std::size_t column(std::size_t k) const { return column_order_[k]; }
   /// Writes the null vector that belongs to a free column. \param free from rank() to size() - 1
   void null_vector(std::size_t free, std::vector<double>& out) const;

@@ -22,13 +22,14 @@ inline Pair load_pair(const double* from) {
 }
 /// Writes two neighbouring numbers.
 inline void store_pair(double* to, Pair pair) { std::memcpy(to, &pair, sizeof(Pair)); }
-/// Likewise numbers kept with the digits of a float.
+/// Reads two neighbouring numbers that are kept with the digits of a float.
 inline Pair load_pair(const float* from) { return Pair{from[0], from[1]}; }
+/// Writes two neighbouring numbers with the digits of a float.
 inline void store_pair(float* to, Pair pair) {
   to[0] = static_cast<float>(pair[0]);
   to[1] = static_cast<float>(pair[1]);
 }
-/// The same number twice.
+/// A pair of the same number twice.
 inline Pair both(double number) { return Pair{number, number}; }
 /// First numbers of two pairs.
 inline Pair firsts(Pair a, Pair b) { return Pair{a[0], b[0]}; }
@@ -64,9 +65,9 @@ public:
     add(other.sum_);
     correction_ += other.correction_;
   }
-  /// Both lanes together.
+  /// Sum of the two lanes.
   [[nodiscard]] double value() const { return (sum_[0] + sum_[1]) + (correction_[0] + correction_[1]); }
-  /// Likewise, without the rounding error of their sum.
+  /// Sum of the two lanes, without the rounding error of adding them.
   [[nodiscard]] double accurate_value() const {
     const double total = sum_[0] + sum_[1], taken = total - sum_[0];
     const double lost = (sum_[0] - (total - taken)) + (sum_[1] - taken);

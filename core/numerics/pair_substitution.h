@@ -12,7 +12,7 @@
 
 namespace carom {
 
-/// Factors L D L^T of such a matrix, by blocks in the order of elimination.
+/// Factors L D L^T of a matrix of blocks of two rows, in the order of elimination.
 struct PairFactors {
   const Index* given_row;  ///< first row of a block in the matrix
   const Index* below;      ///< block whose rows have the block of L of a column; of all but the last column

@@ -35,7 +35,7 @@ public:
   /// Where the numbers of a given block stand in values(), row by row.
   struct Place {
     Index first = 0;
-    bool transposed = false;  ///< its transpose stands there
+    bool transposed = false;  ///< the transpose of the block stands there
   };
 
   /// Returns the places of the entries.
@@ -60,7 +60,7 @@ public:
   /// The combination of rows that vanishes, for given shares of those that were left out.
   /// \param shares by row, zero at rows that were not left out
   void dependence(std::span<const double> shares, std::vector<double>& out);
-  /// Likewise of one of them: 1 there.
+  /// The combination of rows that vanishes, with share 1 of a row that was left out and 0 of all others.
   void dependence(std::size_t row, std::vector<double>& out) {
     row_.assign(size(), 0.0);
     row_[row] = 1.0;

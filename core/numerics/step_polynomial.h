@@ -29,7 +29,7 @@ public:
   /// Numbers that it stays between: the least and the largest of its coefficients.
   [[nodiscard]] double least() const;
   [[nodiscard]] double most() const;
-  /// Its value.
+  /// Value of the polynomial at tau in [0, 1].
   [[nodiscard]] double value(double tau) const;
   /// The polynomial plus a constant.
   [[nodiscard]] StepPolynomial raised(double constant) const;
@@ -40,7 +40,7 @@ public:
   [[nodiscard]] StepPolynomial lowered(double error) const;
   /// The first tau at which it falls below zero, infinity if it does not; 0 if it starts there.
   [[nodiscard]] double first_fall() const;
-  /// True if there is such a tau; costs much less than finding it.
+  /// True if the polynomial falls below zero within the step; costs much less than first_fall().
   [[nodiscard]] bool falls() const;
 
 private:

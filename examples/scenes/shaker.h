@@ -29,13 +29,13 @@ inline double shaker_displacement(const Shaker& shaker, double time) {
   return shaker.growth * time * std::sin(2.0 * std::numbers::pi * shaker.frequency * time);
 }
 
-/// Its velocity [m/s].
+/// Velocity of the plane along its tangent [m/s].
 inline double shaker_speed(const Shaker& shaker, double time) {
   const double omega = 2.0 * std::numbers::pi * shaker.frequency;
   return shaker.growth * (std::sin(omega * time) + omega * time * std::cos(omega * time));
 }
 
-/// And that of the velocity [m/s^2].
+/// Acceleration of the plane along its tangent [m/s^2].
 inline double shaker_acceleration(const Shaker& shaker, double time) {
   const double omega = 2.0 * std::numbers::pi * shaker.frequency;
   return shaker.growth *

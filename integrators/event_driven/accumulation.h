@@ -25,8 +25,10 @@ public:
   /// Time at which infinitely many impacts would have ended [s], by the times up to an impact that is not
   /// remembered yet; NaN where the intervals do not shrink in a constant ratio.
   [[nodiscard]] double end(double time) const;
-  /// Likewise where impacts of other contacts may have come in between, which had nothing to do with these:
-  /// of all impacts, or else of those of the constraints that close.
+  /// Time at which infinitely many impacts would have ended [s], by the times up to an impact that is not
+  /// remembered yet: by the times of all impacts, or, where their intervals do not shrink in a constant
+  /// ratio, by those of impacts of the constraints that close. (Impacts of other contacts may have come in
+  /// between.) NaN where neither do.
   [[nodiscard]] double end(double time, std::span<const Constraint> closing) const;
 
 private:

@@ -27,12 +27,12 @@ namespace carom {
 /// The motion of the centre of mass of a body from a time on.
 struct BodyFlight {
   double time = 0.0;                     ///< [s]
-  Vec<2> place = Vec<2>::Zero();         ///< then [m]
-  Vec<2> velocity = Vec<2>::Zero();      ///< then [m/s]
-  Vec<2> acceleration = Vec<2>::Zero();  ///< then [m/s^2]
+  Vec<2> place = Vec<2>::Zero();         ///< place at that time [m]
+  Vec<2> velocity = Vec<2>::Zero();      ///< velocity at that time [m/s]
+  Vec<2> acceleration = Vec<2>::Zero();  ///< acceleration at that time [m/s^2]
   double reach = -1.0;                   ///< of its outlines from there [m]; < 0: it has none
   double speed = 0.0;      ///< bound of it in the frame of the volumes, where it does not fly freely [m/s]
-  Index component = none;  ///< it is of
+  Index component = none;  ///< component of the body
   bool is_free = false;    ///< nothing but uniform fields acts: the acceleration stays
 
   /// Place of a body that flies freely at a time [m].

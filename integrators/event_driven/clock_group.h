@@ -47,7 +47,7 @@ public:
   void write(State& state, ContactModes& modes) const;
   /// Reaction of a joint of the group at the time last advanced to.
   [[nodiscard]] JointReaction reaction(const JointKind& kind, Index slot, JointId joint);
-  /// Appends the forces of its closed contacts, likewise.
+  /// Appends the forces of the closed contacts of the group at the time last advanced to.
   void list_forces(std::vector<LastingContact>& out);
 
   /// True if its event is not resolved yet.

@@ -26,12 +26,12 @@ struct CAROM_API DetectionMemory {
   explicit DetectionMemory(MotionSample& sample) : within(sample) {}
 
   MotionSample& within;                   ///< at a time of a step; events have it when they look at no step
-  std::vector<double> y;                  ///< there
-  std::vector<double> path_acceleration;  ///< likewise, along the path of a step
+  std::vector<double> y;                  ///< unknowns at that time
+  std::vector<double> path_acceleration;  ///< accelerations at that time, along the path of a step
   std::vector<ForceMargin> margins;
   GuardSample located;               ///< where an event is located
-  GuardSamples samples;              ///< within one step,
-  GuardSamples path_samples;         ///< of guards of elements along its path
+  GuardSamples samples;              ///< within one step
+  GuardSamples path_samples;         ///< of guards of elements along the path of a step
   KnownAccelerations accelerations;  ///< where gaps were looked at
   StepEnds ends;                     ///< of the step
   std::vector<char> is_active;       ///< by pair: closed at both ends

@@ -37,7 +37,7 @@ struct Phase {
   enum Kind : std::uint8_t {
     at_event,  ///< its time is that of `event`, which is not resolved yet
     flowing,   ///< modes are decided; the flow stands at its time
-    ahead,     ///< likewise; the flow made a step beyond, in which `event` is the first
+    ahead,     ///< modes are decided; the flow made a step beyond its time, in which `event` is the first
     parted,    ///< modes are decided, and nothing lasting connects all components
     at_rest    ///< nothing moves, nor will
   };

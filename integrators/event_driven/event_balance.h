@@ -28,12 +28,12 @@ namespace carom {
 /// An impact that was solved and applied.
 struct SolvedImpact {
   EventKind kind = EventKind::impact;
-  double time = 0.0;                                                    ///< [s]
-  const IslandProblem& problem;                                         ///< the problem and its answer
-  const double* velocity;                                               ///< of the model, after
-  ImpactNote note{};                                                    ///< without its works
-  double energy_before = 0.0;                                           ///< kinetic energy of the island [J],
-  double energy_after = 0.0;                                            ///< and after
+  double time = 0.0;             ///< [s]
+  const IslandProblem& problem;  ///< the problem and its answer
+  const double* velocity;        ///< of the model, after
+  ImpactNote note{};             ///< without its works
+  double energy_before = 0.0;    ///< kinetic energy of the island before the impact [J]
+  double energy_after = 0.0;     ///< kinetic energy of the island after the impact [J]
   double accumulation_time = std::numeric_limits<double>::quiet_NaN();  ///< EventRecord::accumulation_time
 };
 

@@ -55,7 +55,7 @@ public:
   [[nodiscard]] double good_until() const { return reached_.good_until; }
   /// Reaction of a joint at a state last advanced to, or changed to since.
   [[nodiscard]] JointReaction reaction(const State& state, const Companion& companion, JointId joint);
-  /// Forces of closed contacts, likewise, in the order of their keys.
+  /// Forces of closed contacts at a state last advanced to, or changed to since, in the order of their keys.
   [[nodiscard]] std::vector<LastingContact> contact_forces(const State& state, const Companion& companion);
   /// The state was changed from outside: start anew from it.
   void forget() { started_ = false; }

@@ -44,12 +44,12 @@ struct CAROM_API EventInstant {
   SmoothMotion& motion;
   double time;          ///< [s]
   std::span<double> y;  ///< state
-  MotionSample& now;    ///< of it, without contact
+  MotionSample& now;    ///< sample of the state, without contact
   /// Accelerations with the forces of contact up to the event; those without contact at a start.
   std::vector<double>& acceleration_before;
-  ConstraintSet& contacts;             ///< of all pairs in it
+  ConstraintSet& contacts;             ///< contacts of all pairs at the state
   std::vector<ActiveContact>& before;  ///< contacts that were closed before the event
-  std::vector<Index>& before_at;       ///< by pair: which of them, `none` if it was open
+  std::vector<Index>& before_at;       ///< by pair: place in `before`, `none` if it was open
   EventIslands& islands;               ///< bodies that touch each other, found by find_islands()
   /// Pairs whose slow sliding is stopped at this instant, found by ImpactSettling.
   std::vector<Index>& stopped;

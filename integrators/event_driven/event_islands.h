@@ -18,8 +18,9 @@ namespace carom {
 /// Islands of one clock group, as lists of its pairs. Keeps its memory.
 class CAROM_API EventIslands {
 public:
-  /// Finds them: mechanisms are joined by the pairs of two bodies that are near. Islands are ordered by their
-  /// first bodies, the pairs of each as in the model; pairs of two bodies that are not near are in none.
+  /// Finds the islands: mechanisms are joined by the pairs of two bodies that are near. Islands are ordered
+  /// by their first bodies, the pairs of each as in the model; pairs of two bodies that are not near are in
+  /// none.
   void find(const GroupModel& model, FunctionRef<bool(std::size_t)> is_near);
   /// Number of islands.
   [[nodiscard]] std::size_t size() const { return islands_.size(); }

@@ -29,7 +29,7 @@ CAROM_API Closure close(SmoothMotion& motion, const MotionSample& at, std::span<
 /// date where y was changed.
 class CAROM_API GroupClosure {
 public:
-  /// Both must outlive it.
+  /// \param motion,failure must outlive it
   GroupClosure(SmoothMotion& motion, const GroupFailure& failure) : motion_(&motion), failure_(&failure) {}
 
   /// Closes an output state: the energy taken out is returned, not booked [J].

@@ -25,7 +25,7 @@ struct GroupClock {
 /// Maker of the errors of one clock group.
 class CAROM_API GroupFailure {
 public:
-  /// Both must outlive it.
+  /// \param model,clock must outlive it
   GroupFailure(const GroupModel& model, const GroupClock& clock) : model_(&model), clock_(&clock) {}
 
   /// Throws a SolverError. \param parts named, the worst first; empty: a body of the group \param problem

@@ -15,7 +15,7 @@ namespace carom {
 /// The flow of one clock group.
 class CAROM_API GroupFlow {
 public:
-  /// Both must outlive it.
+  /// \param pool,problem must outlive it
   GroupFlow(FlowPool& pool, FlowProblem& problem) : pool_(&pool), problem_(&problem) {}
 
   /// Forgets the motion; the next use is start().
@@ -30,7 +30,7 @@ public:
   [[nodiscard]] Flow& change();
   /// Keeps the length of the next step for the next start(). \param length [s], 0: none
   void keep_step(double length) { first_step_ = length; }
-  /// That length [s].
+  /// Length of the next step, as keep_step() took it [s]; 0: none.
   [[nodiscard]] double kept_step() const { return first_step_; }
   /// Lets other groups have the flow. \param at_rest nothing of it is needed any more \param alone there are
   /// no others

@@ -35,7 +35,7 @@ public:
   void take(const SettlingLimit& other) { taken_until_ = std::max(taken_until_, other.taken_until_); }
   /// Whether there may be a settling at a time. \param ahead time that it looks ahead [s]
   [[nodiscard]] bool allows(double time, double ahead) const { return taken_until_ < time + ahead; }
-  /// Counts one.
+  /// Counts a settling.
   void count(double time, double ahead) {
     constexpr double part = 0.125;
     taken_until_ = std::max(taken_until_, time) + part * ahead;

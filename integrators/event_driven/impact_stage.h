@@ -27,8 +27,8 @@ namespace carom {
 
 /// Impacts of an island at one instant so far.
 struct ImpactCounts {
-  int sequence = 0;  ///< where they are sequential: impacts,
-  int closings = 0;  ///< and of those that were slow: projections that closed contacts
+  int sequence = 0;  ///< impacts, where they are sequential
+  int closings = 0;  ///< projections that closed contacts, of slow impacts
 };
 
 /// Ways of solving an impact by Newton's law. Of many contacts: by sweeps, whose modes are solved exactly.
@@ -46,8 +46,8 @@ struct ImpactMemory {
 
   SolverChain& chain;
   ImpactProblems problems;
-  ConstraintSet touching;     ///< constraints of the problem,
-  std::vector<Index> places;  ///< and their pairs, as long as all of these are in it
+  ConstraintSet touching;     ///< constraints of the problem
+  std::vector<Index> places;  ///< pairs of `touching`, as long as all of its constraints are in the problem
   std::vector<ActiveContact> captured;
   std::vector<ImpactCounts> counts;      ///< by island
   std::vector<double> velocities_after;  ///< of the problem's rows, W P + b

@@ -20,7 +20,7 @@
 
 namespace carom {
 
-/// Such impacts; memory that clock groups share.
+/// Impacts without collision; memory that clock groups share.
 class CAROM_API ImpactWithoutCollision {
 public:
   /// Up to enumeration_groups contacts: of all answers with impulses that change something takes the one that

@@ -13,7 +13,7 @@ namespace carom {
 /// Laws of time of one model. Keeps what they said last.
 class CAROM_API LawContinuity {
 public:
-  /// Both must outlive it.
+  /// \param assembly,detector must outlive it
   LawContinuity(const Assembly& assembly, const Detector& detector)
       : detector_(&detector), prescribed_(assembly) {}
 

@@ -15,8 +15,8 @@ namespace carom {
 struct Appointment {
   double time = 0.0;  ///< [s]
   Index a = none;     ///< a component
-  Index b = none;     ///< the other one that it meets; `none`: its own step ends, or its volume
-  std::uint32_t of_a = 0, of_b = 0;  ///< motions of both that it was made for
+  Index b = none;     ///< the component that `a` meets; `none`: the own step of `a` ends, or its volume
+  std::uint32_t of_a = 0, of_b = 0;  ///< motions of `a` and `b` that it was made for
 };
 
 /// Appointments. Those that were made for a motion that has changed since are void.

@@ -26,7 +26,7 @@ namespace carom {
 /// Result of a decision.
 enum class Decision : std::uint8_t {
   made,        ///< modes are given
-  several,     ///< likewise, chosen by rule among several
+  several,     ///< modes are given, chosen by rule among several
   impossible,  ///< no forces exist: an impact without collision is due
   failed       ///< no solver found an answer
 };
@@ -37,11 +37,13 @@ using ForceOnCandidate = std::array<double, Constraint::max_rows>;
 /// Decides for the contacts of one island at a time. Keeps memory only.
 class CAROM_API ModeDecision {
 public:
-  /// \param now sample without contacts that the motion made last; its accelerations are put back
+  /// Decides by the solvers. \param now sample without contacts that the motion made last; its accelerations
+  /// are put back
   Decision decide(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates,
                   SolverChain& chain);
-  /// Likewise by forces found otherwise, by candidate. `failed` if they are no answer, to the tolerance of
-  /// the certificate.
+  /// Decides by forces found otherwise, by candidate. `failed` if they are no answer, to the tolerance of the
+  /// certificate. \param now sample without contacts that the motion made last; its accelerations are put
+  /// back
   Decision decide_by(std::span<const ForceOnCandidate> forces, SmoothMotion& motion, MotionSample& now,
                      std::span<Candidate> candidates);
   /// The last problem and its answer.

@@ -64,7 +64,7 @@ public:
 
   /// Reads the unknowns off a state, works 0.
   void gather(const State& state, std::span<double> y) const;
-  /// Writes them into a state.
+  /// Writes the unknowns into a state.
   void scatter(std::span<const double> y, State& state) const;
   /// Copies velocities, or what is like them, between an array over the model and their places: for all
   /// components f(range of the model, place among the group's velocities).

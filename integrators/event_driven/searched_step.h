@@ -56,7 +56,7 @@ struct SearchedStep {
 /// A state on which a step of the flow ends.
 struct Landing {
   double time = 0.0;      ///< [s]; infinity: none
-  std::vector<double> y;  ///< there
+  std::vector<double> y;  ///< unknowns at that time
 };
 
 }  // namespace carom

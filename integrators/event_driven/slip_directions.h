@@ -27,9 +27,9 @@ struct Candidate {
   bool starts_slipping = false;     ///< its friction is exhausted: it slips against it, unless that cannot be
   bool frictionless = false;        ///< without friction
   bool releases = false;            ///< its force has come to an end: it opens, unless that cannot be
-  bool stays_open = false;          ///< likewise, for the second time at once: it opens
-  double exhausted_friction = 0.0;  ///< the friction force that was exhausted [N],
-  double noise = 0.0;               ///< to this much
+  bool stays_open = false;          ///< its force has ended twice at one instant: it opens
+  double exhausted_friction = 0.0;  ///< the friction force that was exhausted [N]
+  double noise = 0.0;               ///< uncertainty of `exhausted_friction` [N]
   // Where the problem was Painleve's:
   double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
@@ -55,7 +55,7 @@ struct SlipDirection {
   bool reverted = false;  ///< was taken to start slipping or slip and did not
 };
 
-/// Those of all candidates of an island. Keeps memory only.
+/// Modes that the candidates of an island are taken to have. Keeps memory only.
 class CAROM_API SlipDirections {
 public:
   /// An acceleration this small against those without contact is zero.
@@ -63,7 +63,7 @@ public:
 
   /// Begins with what velocities say, and events that have just ended modes.
   void start(std::span<const Candidate> candidates);
-  /// That of a candidate.
+  /// Mode that a candidate is taken to have.
   [[nodiscard]] SlipDirection& operator[](std::size_t candidate) { return slips_[candidate]; }
   [[nodiscard]] const SlipDirection& operator[](std::size_t candidate) const { return slips_[candidate]; }
   /// Changes by an answer: contacts that start slipping have their sliding friction; those that were taken to

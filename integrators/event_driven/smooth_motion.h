@@ -56,8 +56,8 @@ public:
   void sample(double time, const double* y, Forces forces, MotionSample& out);
   /// The contact of a pair in a sample.
   void contact(std::size_t pair, const MotionSample& at, Constraint& out) const;
-  /// Likewise; of a pair with an outline that is farther away than `near` [m] only a lower bound of the gap,
-  /// and no bodies.
+  /// The contact of a pair in a sample; of a pair with an outline that is farther away than `near` [m] only a
+  /// lower bound of the gap, and no bodies.
   void contact_if_near(std::size_t pair, const MotionSample& at, double near, Constraint& out) const;
   /// Regions of the features of the outline of a pair in a sample.
   [[nodiscard]] FeatureRegions regions(const ContactPair& pair, const MotionSample& at) const {

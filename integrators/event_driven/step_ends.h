@@ -29,9 +29,9 @@ struct GapEnd : StepPolynomial::End {
 
 /// Facts known beside of the gap of two bodies, or of a body with an outline.
 struct BodyGapEnd {
-  double speed = 0.0;         ///< bound of the rate of the gap [m/s],
-  double acceleration = 0.0;  ///< and of what accelerations add to it [m/s^2]
-  bool known = false;         ///< else the value of the gap is a lower bound
+  double speed = 0.0;         ///< bound of the rate of the gap [m/s]
+  double acceleration = 0.0;  ///< bound of the change of that rate by accelerations [m/s^2]
+  bool known = false;         ///< the gap is known; false: its value is a lower bound
 };
 
 /// One end of a step. There is one for each group: it is small.
@@ -44,9 +44,9 @@ struct StepEnd {
   std::size_t independent = 0;        ///< constraints of closed contacts that do not follow from others
 };
 
-/// Both ends. A guard falls where it passes its level: zero, or the little below zero where it began, so that
-/// what has just passed does not pass once more; for a gap, less its drift: what follows from closed contacts
-/// does not close beside them.
+/// The two ends of a step. A guard falls where it passes its level: zero, or the little below zero where it
+/// began, so that what has just passed does not pass once more; for a gap, less its drift: what follows from
+/// closed contacts does not close beside them.
 class CAROM_API StepEnds {
 public:
   /// The ends.

@@ -23,9 +23,11 @@ CAROM_API void check_flow_time(const Flow& flow, double time, const char* call);
 
 /// Throws SolverError: a step from `time` of length `step` failed [s].
 [[noreturn]] CAROM_API void fail_flow(const std::string& why, double time, double step);
-/// Likewise because the rates at `where` are not finite.
+/// Throws SolverError: a step from `time` of length `step` failed [s], because the rates at `where` are not
+/// finite.
 [[noreturn]] CAROM_API void fail_flow_not_finite(double where, double time, double step);
-/// Likewise because steps have become as short as the rounding of time.
+/// Throws SolverError: a step from `time` of length `step` failed [s], because steps have become as short as
+/// the rounding of time.
 [[noreturn]] CAROM_API void fail_flow_too_short(double time, double step);
 
 }  // namespace carom

@@ -46,7 +46,7 @@ public:
   SundialsLink(const SundialsLink&) = delete;
   SundialsLink& operator=(const SundialsLink&) = delete;
 
-  /// Another problem from now on; ModelError as check_flow_bind() and check_flow_problem().
+  /// Follows another problem from now on. Throws ModelError as check_flow_bind() and check_flow_problem().
   void bind(FlowProblem& problem);
   /// Number of unknowns.
   [[nodiscard]] std::size_t size() const { return size_; }

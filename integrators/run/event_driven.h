@@ -19,12 +19,12 @@ public:
   enum Choice : std::uint8_t {
     nothing,       ///< no event
     with_impulse,  ///< all but contacts without impulse in an impact
-    all            ///< these too
+    all            ///< all events, also contacts without impulse in an impact
   };
-  /// `all` or `nothing`. Implicit, as the next: an option is a bool or a choice.
+  /// `all` or `nothing`. Implicit: an option is a bool or a choice.
   constexpr EventRecords(bool on)  // NOLINT(google-explicit-constructor)
       : choice_(on ? all : nothing) {}
-  /// That choice.
+  /// The given choice. Implicit: an option is a bool or a choice.
   constexpr EventRecords(Choice choice)  // NOLINT(google-explicit-constructor)
       : choice_(choice) {}
   /// The choice.

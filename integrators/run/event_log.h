@@ -56,7 +56,7 @@ struct EventParts {
   ObstacleId obstacle{};    ///< what it touches; or whose law of time jumps
   ElementId element{};      ///< of a switching point, or whose law of time jumps
   JointId joint{};          ///< driver whose law of time jumps
-  BodyId other{};           ///< the other body, of a contact of two: that of `b` of the key
+  BodyId other{};           ///< of a contact of two bodies: that of `b` of the key
 };
 
 /// Answer of the contact solvers that an event follows from.
@@ -71,8 +71,8 @@ struct EventSolution {
 struct EventMotion {
   BodyId body{};                            ///< not valid where there is none
   std::array<double, 3> position{};         ///< at the event [m], [rad]
-  std::array<double, 3> velocity_before{};  ///< [m/s], [rad/s]
-  std::array<double, 3> velocity_after{};   ///< likewise after; that before but for impacts
+  std::array<double, 3> velocity_before{};  ///< before the event [m/s], [rad/s]
+  std::array<double, 3> velocity_after{};   ///< after the event [m/s], [rad/s]; as before but for impacts
 };
 
 /// One event, of one contact; or, where there is no contact (`body` is not valid), of one force element,
@@ -86,11 +86,11 @@ struct EventRecord : EventParts, EventSolution, ImpactNote {
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts and changes of the mode
-  std::array<double, 3> point{};            ///< of both, where it touches [m]; 0 of a limit
-  std::array<double, 3> normal{};           ///< likewise unit vector towards `body`
-  double gap = 0.0;                         ///< of both, then [m]
-  double energy_before = 0.0;               ///< kinetic energy of all bodies that answer [J]
-  double energy_after = 0.0;                ///< likewise after
+  std::array<double, 3> point{};   ///< of impacts and mode changes: where it touches [m]; 0 of a limit
+  std::array<double, 3> normal{};  ///< of impacts and mode changes: unit vector towards `body`; 0 of a limit
+  double gap = 0.0;                ///< of impacts and mode changes: gap then [m]
+  double energy_before = 0.0;      ///< kinetic energy of all bodies that answer, before [J]
+  double energy_after = 0.0;       ///< kinetic energy of all bodies that answer, after [J]
   /// Motions of the bodies that the contact is of, first that which `body` names; none of events without a
   /// contact.
   std::array<EventMotion, 3> motions{};

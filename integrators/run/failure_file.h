@@ -19,8 +19,9 @@ CAROM_API void check_failure_directory(const std::string& directory, const std::
 [[nodiscard]] CAROM_API std::string save_problem_of(const SolverFailure& failure,
                                                     const std::string& directory, const std::string& comment);
 
-/// Likewise, if it has one. Returns what the error's message should add: "; the problem is in '<path>'", or
-/// why it could not be written; nothing where no directory is set. Never throws for a file.
+/// Writes the contact problem of a failure, if it has one, to a new file in the directory. Returns the text
+/// that the message of the error should add: "; the problem is in '<path>'", or why it could not be written;
+/// nothing where no directory is set. Never throws for a file.
 [[nodiscard]] CAROM_API std::string write_failure(const std::string& directory, const SolverFailure& failure,
                                                   const std::string& message);
 

@@ -32,7 +32,8 @@ public:
 
   /// The iteration with which the next step of a component begins.
   [[nodiscard]] Iteration first(Index component) const;
-  /// The same of several components that contact joins: the strongest of them.
+  /// The iteration with which the next step of several components that contact joins begins: the strongest of
+  /// those of the components.
   [[nodiscard]] Iteration first(std::span<const Index> components) const;
   /// Takes the end of a step of one component over into the memory after this step: `before` is the memory
   /// before it. Each component comes once, in any order; those that are left out are forgotten.

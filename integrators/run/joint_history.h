@@ -33,7 +33,7 @@ public:
   [[nodiscard]] std::size_t depth() const { return depth_; }
   /// Numbers of a step. \param ago 0 of the last one, 1 of the one before, and so on
   [[nodiscard]] const std::vector<double>& numbers(std::size_t ago) const;
-  /// Likewise, to be written.
+  /// Numbers of a step, to be written. \param ago 0 of the last one, 1 of the one before, and so on
   [[nodiscard]] std::vector<double>& numbers(std::size_t ago);
 
 private:
@@ -49,7 +49,8 @@ private:
 /// does.
 struct CAROM_API JointHistory {
   static constexpr int most = static_cast<int>(most_extrapolated);  ///< steps that are remembered
-  /// Likewise of displacements, which have the rounding of positions: more steps would magnify it.
+  /// Steps whose displacements are remembered. These have the rounding of positions, which more steps would
+  /// magnify.
   static constexpr int most_displacements = 5;
 
   double step = 0.0;            ///< length of the steps [s]

@@ -25,13 +25,13 @@ namespace carom {
 /// tangential (one in the plane: the normal turned clockwise).
 struct ContactPlace {
   ConstraintKey key;               ///< identity
-  BodyId body;                     ///< the body, of two the one of `a` of the key
-  ObstacleId obstacle;             ///< the shape on ground that it touches, or
-  BodyId other;                    ///< the body that it touches
+  BodyId body;                     ///< the body; of two bodies that of `a` of the key
+  ObstacleId obstacle;             ///< the shape on ground that `body` touches; not valid: none
+  BodyId other;                    ///< the body that `body` touches; not valid: none
   int directions = 2;              ///< 2 in the plane, 3 in space; 1 of a limit
   std::array<double, 3> point{};   ///< where it touches, when it was detected [m]; 0 of a limit
-  std::array<double, 3> normal{};  ///< unit vector towards `body`, then; 0 of a limit
-  double gap = 0.0;                ///< then; > 0 of a lasting contact that turning has opened [m]
+  std::array<double, 3> normal{};  ///< unit vector towards `body`, at detection; 0 of a limit
+  double gap = 0.0;                ///< when it was detected; > 0 of a lasting contact opened by turning [m]
 };
 
 /// One contact that took part in a step. The impulse acts on `body`, its opposite on what that touches.
@@ -150,9 +150,9 @@ struct ContactCounts {
 /// Counts and extremes since the start.
 struct Statistics : StepStatistics, ContactCounts {
   EventCounts events{};               ///< of the event-driven mode, by kind
-  std::int64_t flow_steps = 0;        ///< of its integrators, over all components
-  std::int64_t flow_evaluations = 0;  ///< of rates, likewise
-  std::int64_t flow_restarts = 0;     ///< likewise
+  std::int64_t flow_steps = 0;        ///< steps of the event-driven integrators, all components
+  std::int64_t flow_evaluations = 0;  ///< rates evaluated by the event-driven integrators, all components
+  std::int64_t flow_restarts = 0;     ///< restarts of the event-driven integrators, all components
 };
 
 }  // namespace carom

@@ -44,7 +44,7 @@ enum class ImpactTimes : std::uint8_t {
 /// How the implicit equations of a step are solved. All iterations converge to the same step.
 enum class Iteration : std::uint8_t {
   fixed_point,  ///< sweeps from loads to motion to loads; contract for roughly h^2 k/m and h d/m below a few
-  anderson,     ///< the same with Anderson acceleration: contracts faster, and for slightly stiffer elements
+  anderson,     ///< sweeps with Anderson acceleration: contract faster, and for slightly stiffer elements
   /// Newton's method with the derivatives of the elements, kept while it contracts well: a sparse linear
   /// problem in every sweep, with the rows of the joints. For elements that are too stiff for the others.
   /// Allocates.
@@ -61,9 +61,10 @@ inline constexpr std::size_t iteration_count = 3;
 
 /// Names: "at_step_start", "located".
 [[nodiscard]] CAROM_API std::string_view to_string(ImpactTimes times);
-/// Names: "trapezoidal", "energy_momentum"; "fixed-point", "Anderson", "linearly implicit", "automatic".
+/// Names: "trapezoidal", "energy_momentum".
 [[nodiscard]] CAROM_API std::string_view to_string(ForceRule rule);
-[[nodiscard]] CAROM_API std::string_view to_string(Iteration iteration);  ///< likewise
+/// Names: "fixed-point", "Anderson", "linearly implicit", "automatic".
+[[nodiscard]] CAROM_API std::string_view to_string(Iteration iteration);
 
 /// Steps of varying length. Each step is computed once as a whole and once as two halves; the halves are
 /// kept, and the difference gives the error. Where sliding ends, turns round or begins within a half, the

@@ -40,7 +40,7 @@ public:
     ConstraintKey key;                                     ///< which it is
   };
 
-  /// Both must outlive it.
+  /// \param assembly,detector must outlive it
   ClosingSearch(const Assembly& assembly, const Detector& detector, const TimeStepping& options)
       : look_(assembly, detector),
         most_impacts_(options.most_impacts),

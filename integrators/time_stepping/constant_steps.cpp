@@ -96,7 +96,7 @@ void TimeStepper::advance_under_constant_loads(const StepIsland& island, const S
   if (parts_.options.project_gaps) projection_.apply(island, in, balance_);
 }
 
-/// Likewise of a batch of many bodies, part by part.
+/// Advances a batch of many bodies under constant loads, part by part.
 void TimeStepper::advance_part_by_part(const StepIsland& island, const StepInput& in) {
   const Range components = island.batches.front();
   const bool locates = parts_.located.on();

@@ -37,14 +37,14 @@ public:
   /// How contacts that are alone on their bodies are solved, where all of an island are: as problems() like
   /// any others, or from their numbers, as lone().
   enum class Alone : std::uint8_t { as_problems, from_numbers };
-  /// Likewise of an island under constant loads, or a part of it, whose bodies answer for themselves, and
-  /// solves them. Impulses change velocities of the bodies struck() alone. Returns the first problem that is
-  /// not solved, or null.
+  /// States and solves the contact problems of an island under constant loads, or of a part of it, whose
+  /// bodies answer for themselves. Impulses change velocities of the bodies struck() alone. Returns the first
+  /// problem that is not solved, or null.
   [[nodiscard]] const IslandProblem* solve_constant(const StepInput& in, const StepIsland& island,
                                                     Alone alone, StepTrial& trial);
   /// The contacts that solve_constant() has solved from their numbers.
   [[nodiscard]] const LoneContacts& lone() const { return lone_; }
-  /// Those of some bodies that have constraints, after solve_constant().
+  /// Those of the given bodies that have constraints, after solve_constant().
   [[nodiscard]] std::span<const Index> struck(Range bodies) const;
   /// Problems of the island at hand.
   [[nodiscard]] std::span<IslandProblem> problems() {

@@ -17,7 +17,7 @@ struct FastestTurn {
   double angle = 0.0;  ///< [rad]
 };
 
-/// Finds it.
+/// Finds the body of a component that turns farthest in a step, as fast as at its start.
 [[nodiscard]] CAROM_API FastestTurn fastest_turn(const StepInput& in, Index component);
 
 /// Longest way of a body in a step, by its speeds at both ends; angles times the radius of gyration [m].
@@ -26,7 +26,7 @@ struct FastestTurn {
                                            const State& end);
 
 /// Size of some bodies and of where they are: their largest coordinate and radius of gyration [m].
-/// \param lengths likewise
+/// \param lengths Assembly::length_scales()
 [[nodiscard]] CAROM_API double size_of(const Assembly& assembly, Range bodies,
                                        const std::vector<double>& lengths, const State& at);
 

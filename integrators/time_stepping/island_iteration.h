@@ -19,7 +19,7 @@ namespace carom {
 /// Iterates islands. Keeps memory only.
 class CAROM_API IslandIteration {
 public:
-  /// \param parts must outlive it \param stop asked between sweeps, may be null; likewise
+  /// \param parts must outlive it \param stop asked between sweeps, may be null; must outlive it
   IslandIteration(StepParts& parts, const StopRequest* stop);
 
   /// Uses another iteration.

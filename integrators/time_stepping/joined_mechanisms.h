@@ -19,10 +19,10 @@
 
 namespace carom {
 
-/// Sweeps over such islands. Keeps memory only.
+/// Sweeps over islands of several components, of which some have joints. Keeps memory only.
 class CAROM_API JoinedMechanisms {
 public:
-  /// Both must outlive it.
+  /// \param assembly,stages must outlive it
   JoinedMechanisms(const Assembly& assembly, JointStages& stages);
 
   /// True if an island has several components, and one of them joints.

@@ -40,7 +40,8 @@ public:
   /// Throws SolverError where a prescribed motion is not finite.
   [[nodiscard]] bool follow_path(const StepInput& in, const State& middle, StepJointRows& joints,
                                  StepTrial& trial);
-  /// Unless a path is followed acts along the rows at the start, with rotations there. Throws likewise.
+  /// Unless a path is followed acts along the rows at the start, with rotations there. Throws SolverError
+  /// where a prescribed motion is not finite.
   void place(const StepInput& in, StepTrial& trial);
 
   /// A.

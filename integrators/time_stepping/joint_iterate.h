@@ -52,7 +52,8 @@ struct CAROM_API JointIterate {
   void correct_impulses(const StepInput& in, const StepTrial& trial);
   /// Changes of velocity by the impulses along the rows of the reactions.
   void find_reactions();
-  /// Brings the rows to the iterate, and factors them. The iterate is kept as that before.
+  /// Brings the rows to the iterate, and factors them. Its coordinates and velocities are kept as those of
+  /// the iterate before the next one.
   /// \param first of the step: chooses the rows of the reactions
   void place(const StepInput& in, StepTrial& trial, bool first);
   /// Reactions to the loads, with the rows of the iterate. The iterate before is kept.

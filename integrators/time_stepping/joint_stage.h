@@ -60,7 +60,7 @@ struct JointContacts {
   std::span<Constraint> constraints;  ///< of the island
   IslandProblem* problem = nullptr;   ///< null where nothing touches or rubs
   SolverChain& chain;
-  bool stale_matrix = false;  ///< another stage has made its own W
+  bool stale_matrix = false;  ///< W of the problem is that of another stage, and is to be made anew
 };
 
 /// Where a step has gone astray: how far which body would be moved back, and the longest way of one.
@@ -85,14 +85,15 @@ public:
                            StepTrial& trial);
   /// The first guess in an island of several components (joined_mechanisms.h), which answers as a whole.
   void start_joined(const StepInput& in, StepTrial& trial);
-  /// First half of a sweep there: reactions without contact. \param free out: velocities that contact sees,
-  /// if it did nothing, over all velocities
+  /// First half of a sweep in an island of several components: reactions without contact. \param free out:
+  /// velocities that contact sees, if it did nothing, over all velocities
   void approach(const StepInput& in, const StepRule& rule, StepTrial& trial, double* free);
-  /// Second half. \param change of velocities by contact and what joints answer to it, over all velocities
+  /// Second half of a sweep in an island of several components. \param change of velocities by contact and
+  /// what joints answer to it, over all velocities
   void leave(const StepInput& in, const StepRule& rule, const double* change, StepTrial& trial);
   /// Change that the sweep has made, or that another would make.
   [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial);
-  /// True if it is to be judged as the latter.
+  /// True if change() is to be judged as the change that another sweep would make.
   [[nodiscard]] bool looks_ahead() const { return guessed_; }
   /// Distance of positions and velocities from obeying the joints, in units of what rounding lets them.
   [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
@@ -149,7 +150,7 @@ public:
 
   /// True if there are joints.
   [[nodiscard]] bool any() const { return rows_ > 0; }
-  /// Those of a component; null where there are none.
+  /// Joints of a component; null where it has none.
   [[nodiscard]] JointStage* of(Index component) const {
     return stages_.empty() ? nullptr : stages_[component].get();
   }

@@ -20,7 +20,7 @@ namespace carom {
 /// Derivatives at one iterate. Keeps memory only.
 class CAROM_API JointTurn {
 public:
-  /// Finds them where the rows of the iterate have been placed, with its impulses.
+  /// Finds the derivatives where the rows of the iterate have been placed, with its impulses.
   void differentiate(const StepInput& in, JointIterate& joints, const StepTrial& trial);
   /// d(Gm^T L)/dv_{j+1}, by velocities of the model.
   [[nodiscard]] const std::vector<MatrixNumber>& of_reactions() const { return of_reactions_; }

@@ -17,7 +17,7 @@
 
 namespace carom {
 
-/// Finds them. Keeps memory.
+/// Finds jumps of loads at impacts within a step. Keeps memory.
 class CAROM_API JumpSearch {
 public:
   /// A component at an iterate.

@@ -15,7 +15,8 @@ namespace carom {
 /// start
 void locate_under_constant_loads(Range components, std::span<const Constraint> contacts, const StepInput& in,
                                  StepParts& parts);
-/// Completes the account of such components in the trial, whose works are along mean velocities.
+/// Completes the account of components with bodies that were hit in the trial, whose works are along mean
+/// velocities.
 void add_work_of_flights(Range components, const StepInput& in, StepParts& parts);
 
 }  // namespace carom

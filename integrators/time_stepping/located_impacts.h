@@ -19,7 +19,7 @@
 
 namespace carom {
 
-/// Finds such bodies, and moves them. Keeps memory.
+/// Finds bodies that shapes on ground hit within the step, and moves them. Keeps memory.
 class CAROM_API LocatedImpacts {
 public:
   /// \param assembly,detector must outlive it
@@ -45,7 +45,8 @@ public:
   /// ground at the end
   bool take_up(const StepInput& in, Range components, std::span<const Constraint> contacts,
                const GroundPlaces& places, StepTrial& trial);
-  /// Moves those of some bodies again, after the rule has moved all. Bodies may be shared out to threads.
+  /// Moves the bodies taken up among some bodies again, after the rule has moved all. Bodies may be shared
+  /// out to threads.
   void advance(const StepInput& in, const StepRule& rule, const StepLoads& loads, Range bodies,
                StepTrial& trial);
   /// True if any of some bodies was taken up.
@@ -70,9 +71,9 @@ public:
   /// velocities [J].
   [[nodiscard]] double work_of_flights(const StepInput& in, const StepRule& rule, Range bodies,
                                        const StepTrial& trial);
-  /// Adds what solvers have counted since the last call;
+  /// Adds the counts of the solvers since the last call.
   void add_statistics(ChainStatistics& sum);
-  /// or forgets it, after a step that failed.
+  /// Forgets the counts of the solvers since the last call, after a step that failed.
   void forget_statistics();
 
 private:
@@ -97,7 +98,7 @@ private:
   std::vector<LocatedMotion> motions_;
   std::size_t in_use_ = 0;
   std::vector<std::pair<Index, std::size_t>> order_;  // body, its motion; ascending
-  std::vector<const LocatedMotion*> of_bodies_;       // at hand, likewise
+  std::vector<const LocatedMotion*> of_bodies_;       // of the last motions_of(), by ascending body
   struct {
     std::span<const Constraint> contacts;
     std::vector<OfBody> of_bodies;  // of these, ascending

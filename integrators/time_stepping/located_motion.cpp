@@ -138,7 +138,8 @@ bool LocatedMotion::fly(const LocatedBody& at, MotionPhase& flight) {
   return fly_and_turn(at, flight);
 }
 
-/// Likewise with contacts that may have turned already; at the begin they are as `of_flight_.begin` has them.
+/// The body, at the begin of the flight, comes to its end, with contacts that may have turned already. At the
+/// begin of the flight they are as `of_flight_.begin` has them.
 bool LocatedMotion::fly_and_turn(const LocatedBody& at, MotionPhase& flight) {
   constexpr int most_tries = 20;
   constexpr double rounding = 1e-15;

@@ -39,7 +39,7 @@ public:
   [[nodiscard]] const IslandProblem* failed() const { return failed_; }
   /// Phases of the last advance(), in their order.
   [[nodiscard]] std::span<const MotionPhase> phases() const { return {phases_.data(), used_}; }
-  /// Its velocities among all.
+  /// Velocities of the body among all.
   [[nodiscard]] Range velocities(const StepInput& in) const;
   /// Makes its velocities at the end of a phase those of the trial.
   void show_end(const StepInput& in, const MotionPhase& phase, StepTrial& trial) const;
@@ -47,7 +47,7 @@ public:
   [[nodiscard]] bool is_hit() const { return hit_ <= 1.0; }
   /// Work of loads over the flights [J].
   [[nodiscard]] double work(const StepInput& in, const StepLoads& loads) const;
-  /// Its solvers.
+  /// Solvers of its contact problems.
   [[nodiscard]] SolverChain& chain() { return chain_; }
 
 private:

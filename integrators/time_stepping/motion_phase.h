@@ -25,14 +25,14 @@ namespace carom {
 /// loads that are linear, a mean load has it already.
 struct StepLoads {
   const double* start;                 ///< F0, or the mean loads
-  const double* end;                   ///< F1, or these
+  const double* end;                   ///< F1, or the mean loads
   const double* jump = nullptr;        ///< J; null: none
   const double* correction = nullptr;  ///< null: none
   bool is_mean = false;                ///< loads are mean loads
   /// The body at hand is hit: its loads jump when it is. Those of any other are spread over the step.
   bool at_impact = false;
 
-  /// One of them at a share of the step. Over the step the mean of a load is the same, however it jumps.
+  /// A load at a share of the step. Over the step the mean of a load is the same, however it jumps.
   /// \param hit share at which it jumps, if that is behind: else above 1
   [[nodiscard]] double at(Index i, double share, double hit) const {
     const double even = start[i] + share * (end[i] - start[i]);
@@ -95,7 +95,7 @@ struct LocatedStep {
   StepTrial& trial;
 };
 
-/// Such a step of one body.
+/// A step that one body is moved through.
 struct LocatedBody : LocatedStep {
   Index body;
   BodySlot slot;

@@ -34,9 +34,9 @@ namespace carom {
 
 /// Which passages are looked for.
 enum class Passages : std::uint8_t {
-  /// All: nothing may be deep in anything.
+  /// All passages: nothing may be deep in anything.
   all,
-  /// Those that closings at the end of the step do not show. Ground without a far side is left out; things
+  /// Passages that closings at the end of the step do not show. Ground without a far side is left out; things
   /// that turn while they are near each other, and are thinner than 1/64 of their way in the step, may be
   /// missed.
   of_far_sides

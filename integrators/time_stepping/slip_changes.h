@@ -25,14 +25,14 @@ namespace carom {
 
 /// A step, for changes of sliding in it. A view.
 struct SlidStep {
-  const State& start;          ///< of the step
-  const ContactModes& before;  ///< modes of the step before it
-  const State& end;            ///< of the step
-  const ContactModes& modes;   ///< in it
-  const StepReport& report;    ///< of it
+  const State& start;          ///< state at the start of the step
+  const ContactModes& before;  ///< modes in the step before
+  const State& end;            ///< state at the end of the step
+  const ContactModes& modes;   ///< modes in the step
+  const StepReport& report;    ///< of the step
 };
 
-/// Finds them. Keeps memory.
+/// Finds changes of sliding in steps. Keeps memory.
 class CAROM_API SlipChanges {
 public:
   /// \param assembly must outlive it

@@ -33,11 +33,11 @@ namespace carom {
 struct ContactTally {
   int impacts = 0;              ///< ContactRecord::impact
   int several_solutions = 0;    ///< contacts of problems of that outcome
-  int forces_not_unique = 0;    ///< likewise
+  int forces_not_unique = 0;    ///< contacts of problems of that outcome
   double deepest_gap = 0.0;     ///< the most negative [m]
   double worst_residual = 0.0;  ///< the largest certificate
 
-  /// Adds those of others.
+  /// Adds the counts of other contacts, and takes in their extremes.
   void add(const ContactTally& other);
 };
 
@@ -48,8 +48,8 @@ struct StepResult {
   StepReport report;                  ///< of the step
   ContactHistory contacts;            ///< of large islands
   ContactTally tally;                 ///< of the contacts in the report
-  int cut_sequences = 0;              ///< of impacts at the start of the step, that their limit ended
-  int scaled_impacts = 0;             ///< likewise whose restitution was scaled
+  int cut_sequences = 0;              ///< sequences of impacts at the start that their limit ended
+  int scaled_impacts = 0;             ///< impacts at the start of the step whose restitution was scaled
   int plastic_jams = 0;               ///< contact problems solved with e = 0, since they had no answer
   ContactModes contact_modes;         ///< of contacts up to the end of the step
   ContactModes joint_friction_modes;  ///< of friction in joints
@@ -57,17 +57,17 @@ struct StepResult {
   /// it when this one is finished: to clear a record costs as much as to write it.
   std::size_t recorded = 0;
 
-  /// Those of the step.
+  /// Records of the contacts of the step.
   [[nodiscard]] std::span<ContactRecord> records() { return std::span(report.contacts).first(recorded); }
   [[nodiscard]] std::span<const ContactRecord> records() const {
     return std::span(report.contacts).first(recorded);
   }
-  /// One more, every field of which is to be written.
+  /// Appends a record, every field of which is to be written.
   [[nodiscard]] ContactRecord& next_record() {
     if (recorded == report.contacts.size()) report.contacts.emplace_back();
     return report.contacts[recorded++];
   }
-  /// Asks for the memory of one that comes soon.
+  /// Asks for the memory of a record that comes `ahead` records later.
   void fetch_records(std::size_t ahead) const { fetch_ahead(std::span(report.contacts), recorded + ahead); }
 };
 
@@ -84,7 +84,8 @@ public:
   void use_jumps(std::span<const GroundJump> jumps) { jumps_ = jumps; }
   /// Books what elements did: works and energies of the last iterate. False if one is not finite.
   [[nodiscard]] bool book_couplings(const StepInput& in, Index component, const StepTrial& trial);
-  /// Likewise of bodies whose loads do not change, and are conservative.
+  /// Books works and energies of bodies whose loads do not change, and are conservative. False if the sum of
+  /// the stored energies is not finite.
   [[nodiscard]] bool book_loads(const BlockWorks& works, const StoredEnergies& potentials);
   /// Books the work of reactions and of the way back onto the joints; records their impulses.
   void book_joints(const StepInput& in, Index component, JointStage& joints, const IslandProblem* contact,
@@ -93,11 +94,13 @@ public:
   /// \param after velocities at the end as contact sees them \param time when that is [s]
   double book_contacts(const IslandProblem& problem, const double* after, double time, const StepInput& in,
                        const StepTrial& trial);
-  /// Likewise of contacts that are alone, at the end of the step. \param leaves_out bodies whose contacts are
-  /// not booked; empty: none
+  /// Books the impulses of contacts that are alone on their bodies, at the end of the step. \param after
+  /// velocities at the end as contact sees them \param leaves_out bodies whose contacts are not booked;
+  /// empty: none
   void book_lone(const LoneContacts& contacts, const double* after, const StepInput& in,
                  const StepTrial& trial, FunctionRef<bool(Index body)> leaves_out = {});
-  /// Likewise those of an impact at the start of the step.
+  /// Books the impulses of an impact at the start of the step. Returns the energy that it gained [J], else 0.
+  /// \param after velocities behind the impact, as contact sees them
   double book_impact(const IslandProblem& problem, const double* after, const ImpactNote& note,
                      const StepInput& in, const StepTrial& trial);
   /// Marks the records booked last as those of an impact beyond the limit of impacts. \param records how many
@@ -109,8 +112,8 @@ public:
   /// Books work of contacts that is an error of the step: it was booked as work of moving ground. \param work
   /// [J]
   void book_turning(double work);
-  /// Books that bodies were moved out of ground shapes. \param before potentials of their component before it
-  /// \param after likewise
+  /// Books that bodies were moved out of ground shapes. \param before potentials of their component before
+  /// that \param after potentials of their component after that
   void book_projection(const Separation& result, const StoredEnergies& before, const StoredEnergies& after);
   /// Books a change of kinetic energy by bringing velocities back onto joints. \param lost [J]
   void book_velocity_projection(double lost);

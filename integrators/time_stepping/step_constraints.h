@@ -32,7 +32,7 @@ public:
   /// Throws ModelError for a contact without a law.
   StepConstraints(const Assembly& assembly, const TimeStepping& options);
 
-  /// Its detector.
+  /// Detector that finds the contacts.
   [[nodiscard]] const Detector& detector() const { return detector_; }
   /// Ground shapes that move, at the start of the step or at its end.
   [[nodiscard]] const GroundPlaces& places(bool at_end) const { return at_end ? ground_.end : ground_.start; }
@@ -66,11 +66,13 @@ public:
     rules_.parting = parting;
     remember(in, in.last_step);
   }
-  /// False if surely some components have no contact, after begin(), or those of such an island.
+  /// False if some components surely have no contact in a step that begin() began, or in an island for which
+  /// finds_in_parts() is true.
   [[nodiscard]] bool may_touch(const StepInput& in, Range components, const StepTrial& trial) const {
     return !rules_.plain || detector_.ground().any_near(components, query(in, trial));
   }
-  /// Finds the contacts of some components, likewise. Valid until the next call.
+  /// Finds the contacts of some components in a step that begin() began, or in an island for which
+  /// finds_in_parts() is true. Valid until the next call.
   [[nodiscard]] std::span<Constraint> find_part(const StepInput& in, Range components,
                                                 const StepTrial& trial);
   /// Memory for the constraints of an island before its first iteration, which changes them.
@@ -102,7 +104,7 @@ private:
     bool turning;                     // contacts may be opened by turning, or by slack
     bool plain;                       // nothing touches but ground at rest, with laws of sliding alone
     Parting parting = Parting::acts;  // in the last find()
-    bool by_part = false;             // large batches go part by part, likewise
+    bool by_part = false;             // large batches go part by part, in the last find()
     Index part_size = none;           // allow_parts()
     double margin = 0.0;              // gaps that count as closed [m]
     double slowest = 0.0;             // contacts that part more slowly do not part [m/s]

@@ -32,8 +32,9 @@ public:
   /// \param batches ranges of components, in their order, that stay where and as they are as long as this is
   /// used
   void find(std::span<const Range> batches);
-  /// Likewise where some do: what they join leaves its batch. Every component belongs to an island. Returns
-  /// the order in which the constraints have to stand, those of an island together, as they came.
+  /// Finds the islands where some constraints join components: what they join leaves its batch. Every
+  /// component belongs to an island. Returns the order in which the constraints have to stand, those of an
+  /// island together, as they came.
   /// \param joined components of each constraint, in the order of the first ones
   std::span<const Index> find(std::span<const Range> batches, std::span<const JoinedNodes> joined);
   /// Shares the constraints out, which stand in the order of their islands.

@@ -22,9 +22,9 @@ namespace carom {
 
 /// Rows along which the joints of a component push.
 enum class Reactions : std::uint8_t {
-  halfway,  ///< those halfway
-  at_end,   ///< those at the end
-  mixed     ///< those halfway, by the matrix of both
+  halfway,  ///< rows halfway
+  at_end,   ///< rows at the end
+  mixed     ///< rows halfway, by the matrix of these and the rows at the end
 };
 
 /// The rows of a step. Memory of one component.

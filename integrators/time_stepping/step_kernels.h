@@ -24,7 +24,7 @@ struct SweepArrays {
   bool rational_turn = false;        ///< turn by 2 atan(h w/2) instead of h w
 };
 
-/// Arrays of the loads before and after a sweep, likewise.
+/// Arrays of the loads before and after a sweep, beginning with the first body of a range.
 struct LoadArrays {
   const double* made_with = nullptr;  ///< x
   const double* led_to = nullptr;     ///< g

@@ -44,7 +44,7 @@ struct BodyPlace {
   Index v = 0;  ///< first velocity
 };
 
-/// One of the two rules.
+/// One of the two rules of ForceRule.
 class CAROM_API StepRule {
 public:
   explicit StepRule(ForceRule rule) : rule_(rule) {}
@@ -64,12 +64,14 @@ public:
   void move(const StepInput& in, Range bodies, bool with_impulses, StepTrial& trial) const {
     move(in, bodies, start_of_sum(in, trial), trial.loads_guess.data(), with_impulses, trial);
   }
-  /// Likewise by the loads at the start, which do not change.
+  /// Velocities, then positions of some bodies by the loads at the start, which do not change.
+  /// \param with_impulses whether impulses have changed velocities there (StepTrial::dv_impulses)
   void move_constant(const StepInput& in, Range bodies, bool with_impulses, StepTrial& trial) const {
     const double* const loads = in.companion.loads.total.data();
     move(in, bodies, loads, loads, with_impulses, trial);
   }
-  /// Likewise of bodies whose place and masses are known.
+  /// Velocities, then positions by the loads at the start, of bodies whose place and masses are known.
+  /// \param with_impulses whether impulses have changed velocities there (StepTrial::dv_impulses)
   void move_constant(const StepInput& in, const BodyPlace& bodies, const BodyMasses& masses,
                      bool with_impulses, StepTrial& trial) const {
     const double* const loads = in.companion.loads.total.data();
@@ -87,7 +89,7 @@ public:
   /// Works of loads that do not change over some bodies, whose velocities are `v`.
   void works_constant(const StepInput& in, Range bodies, Range v, const StepTrial& trial,
                       BlockWorks& out) const;
-  /// Work of such loads alone [J].
+  /// Work of loads that do not change over some bodies, whose velocities are `v` [J].
   [[nodiscard]] double work_constant(const StepInput& in, Range v, const StepTrial& trial) const;
 
 private:

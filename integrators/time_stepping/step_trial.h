@@ -18,8 +18,8 @@ namespace carom {
 /// Loads by cause, arrays over all velocities [N, N m].
 struct CAROM_API LoadsAtEnd {
   std::vector<double> total;        ///< sum; where causes are evaluated its conservative part, until finish()
-  std::vector<double> dissipative;  ///< empty if no element books any
-  std::vector<double> external;     ///< likewise
+  std::vector<double> dissipative;  ///< empty if no element books dissipative loads
+  std::vector<double> external;     ///< empty if no element books external loads
 
   /// Arrays for elements that book by cause.
   [[nodiscard]] Loads by_cause();
@@ -70,13 +70,13 @@ struct CAROM_API TrialAccount {
 
 /// Quantities of which the model of a run needs some: they save what nobody asks for.
 struct StepNeeds {
-  bool dissipative = false;      ///< an element books dissipative loads,
-  bool external = false;         ///< or external ones
-  bool load_rotations = false;   ///< loads depend on rotations of bodies,
-  bool start_rotations = false;  ///< or they, or contacts, at the start
+  bool dissipative = false;      ///< an element books dissipative loads
+  bool external = false;         ///< an element books external loads
+  bool load_rotations = false;   ///< loads depend on rotations of bodies
+  bool start_rotations = false;  ///< loads or contacts depend on rotations at the start
   bool midpoint = false;         ///< an element, or a joint, is asked halfway
 };
-/// Reads them off a model. \param mean whether elements give mean loads
+/// Quantities that the model of a run needs. \param mean whether elements give mean loads
 [[nodiscard]] CAROM_API StepNeeds step_needs(const Assembly& assembly, const Detector& detector, bool mean);
 
 /// The trial of one step at a time. Keeps its memory.
@@ -85,7 +85,8 @@ struct CAROM_API StepTrial {
 
   /// Forgets the step before. \param in the next step, of which no loads are guessed
   void begin(const StepInput& in);
-  /// Likewise where loads are guessed: takes over their history.
+  /// Forgets the step before. \param in the next step, of which loads are guessed \param history of the
+  /// loads, is taken over
   void begin(const StepInput& in, LoadHistory& history);
   /// Gives the history back after a step that failed: nothing in it is pending any more.
   void give_back(const StepInput& in, LoadHistory& history);
@@ -116,10 +117,10 @@ struct CAROM_API StepTrial {
   State midpoint;                            ///< halfway, where elements or joints are asked
   Evaluation at_start, at_midpoint, at_end;  ///< rotations
   std::vector<double> loads_guess;           ///< F_{j+1}, or mean loads, as guessed
-  LoadsAtEnd loads_end;                      ///< those that the guess led to
-  std::vector<float> rounding;               ///< what rounding cuts off v_{j+1}
+  LoadsAtEnd loads_end;                      ///< loads that the guess led to
+  std::vector<float> rounding;               ///< part that rounding cuts off v_{j+1}
   std::vector<double> dv_impulses;     ///< changes of velocity by impulses; empty until anything touches
-  std::vector<double> free;            ///< velocities without them, likewise
+  std::vector<double> free;            ///< velocities without impulses; empty until anything touches
   TrialAccount account;                ///< of the component at hand
   LoadHistory history;                 ///< of the companion, during a step in which loads are guessed
   std::vector<std::uint8_t> recorded;  ///< by block: its part of the last change, where that is pending

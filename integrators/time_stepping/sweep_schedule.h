@@ -29,7 +29,7 @@ namespace carom {
 /// Coupling of a component.
 enum class CouplingClass : std::uint8_t {
   iterated,       ///< loads depend on what the step leads to
-  streamable,     ///< likewise, but nothing comes between bodies and their loads
+  streamable,     ///< loads depend on what the step leads to; nothing comes between bodies and their loads
   constant_loads  ///< loads are those at the start: no iteration
 };
 
@@ -89,15 +89,15 @@ public:
   /// Sweeps around contacts alone.
   struct LocalSweeps {
     int made = 0;
-    bool contract = false;  ///< else all blocks are guessed anew
+    bool contract = false;  ///< local sweeps contract; false: all blocks are guessed anew
   };
   /// Guesses the loads on blocks with contacts by sweeps of these blocks alone, where they are few, for the
   /// fixed-point iteration. \param again goes on from the last call
   LocalSweeps presolve(const SweepStages& stages, Iteration iteration, double tolerance, bool again);
 
-  /// Change that another sweep would make, the largest over all blocks;
+  /// Change that another sweep would make, the largest over all blocks.
   [[nodiscard]] SweepChange change(const SweepStages& stages) const { return largest(changes_, stages); }
-  /// of the first of two that were fused.
+  /// Change that another sweep would make, the largest over all blocks, after the first of two fused sweeps.
   [[nodiscard]] SweepChange earlier_change(const SweepStages& stages) const {
     return largest(earlier_changes_, stages);
   }

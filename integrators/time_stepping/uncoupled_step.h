@@ -28,7 +28,7 @@ struct LooseBodies {
   BodyMasses masses = {};
 };
 
-/// Some of them, that are looked at together: does any touch? If so they go by parts, whose contacts are
+/// Uncoupled bodies that are looked at together: does any touch? If so they go by parts, whose contacts are
 /// found, solved and booked at once.
 struct LoosePiece {
   LooseBodies all = {};

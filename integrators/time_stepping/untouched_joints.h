@@ -12,7 +12,7 @@
 
 namespace carom {
 
-/// The iteration of such a step.
+/// The iteration of a step in which nothing touches and no row is near to following from others.
 class CAROM_API UntouchedJoints {
 public:
   /// \param iterate must outlive it \param first_row of the component among the rows of all

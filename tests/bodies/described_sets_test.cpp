@@ -36,7 +36,7 @@ struct Told {
   Outline outline(const PartCheck&) const { return set; }
 };
 
-/// An obstacle likewise.
+/// An obstacle that is the set it is told.
 struct ToldGround {
   static constexpr Role role = Role::obstacle;
   static constexpr std::string_view label = "told ground";

@@ -61,7 +61,8 @@ TEST(PlasticJam, WhatOnlyImpulsesWithoutMeasureCanGiveIsNotGiven) {
   EXPECT_LE(jam.gain(stopped, falls), 1e-12);  // rounding, as below
 }
 
-// Likewise farther apart: impulses of Newton's law that are no larger than this stay, and gains are told.
+// The ceiling touches beside the floor, farther away: impulses of Newton's law that are no larger than this
+// stay, and gains are told.
 TEST(PlasticJam, GainsOfTheLawStay) {
   std::vector<Touch> touches = corridor(0.5, 0.2);
   touches[1].point = {0.1, 0.0};

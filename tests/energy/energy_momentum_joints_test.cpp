@@ -95,7 +95,7 @@ TEST(EnergyMomentumJoints, AChainInFreeFlightKeepsItsMomenta) {
   const Departure largest = departure(simulation, 5000);
   EXPECT_LE(largest.energy, 5e-12 * start.energy);
   EXPECT_LE(largest.linear, 1e-12 * 5.0 * 0.3);                     // rounding of 5,000 steps
-  EXPECT_LE(largest.angular, 1e-11 * simulation.energy().scale());  // likewise, of numbers about 10
+  EXPECT_LE(largest.angular, 1e-11 * simulation.energy().scale());  // rounding, of numbers about 10
 }
 
 /// Largest gap of the pins of a chain, and how fast they open.

@@ -310,7 +310,7 @@ TEST(EventScenes, CapturedInAlmostSingularPositions) { expect_sound_scenes({1741
 // it pulls.
 TEST(EventScenes, AContactWithoutLever) { expect_sound_scenes({1801691}); }
 
-// Likewise a disc that a slack spring left: where all loads vanished its force was rounding, above zero.
+// A disc that a slack spring left: where all loads vanished its force was rounding, above zero.
 TEST(EventScenes, AForceThatEndsWhereAllLoadsVanish) { expect_sound_scenes({10830589}); }
 
 // Of two corners in line one begins to slide while the friction of the other, which falls with the speed, is

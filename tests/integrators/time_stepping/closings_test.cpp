@@ -314,8 +314,8 @@ TEST(ClosingsLong, HigherStacksOfBlocksStayAtRest) {
   for (const int blocks : {8, 10}) expect_rest(blocks);
 }
 
-// Likewise corners of the ground: of a block of ground as wide as the stack, of a narrower one, of terrain
-// below the corners and between them.
+// Stacks stay at rest on corners of the ground: of a block of ground as wide as the stack, of a narrower one,
+// of terrain below the corners and between them.
 TEST(Closings, StacksOnCornersOfTheGroundStayAtRest) {
   constexpr double top = 0.3, half = half_side;
   const auto block = [&](double width) {

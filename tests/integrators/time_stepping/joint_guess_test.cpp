@@ -122,7 +122,8 @@ TEST(JointGuess, CheckpointsOfTheVersionBeforeAreRead) {
   expect_same(1e-9);
 }
 
-// Likewise data/chain_version_7.checkpoint, which lacks some counts of the statistics only.
+// data/chain_version_7.checkpoint is that of chain(6) at 0.3 s, as version 7 wrote it: it lacks some counts
+// of the statistics only.
 TEST(JointGuess, CheckpointsOfVersion7AreRead) {
   Simulation whole(chain(6), options);
   whole.run_until(0.3);

@@ -87,7 +87,7 @@ int steps_without_contact(const System& system, const TimeStepping& mode, double
   return missing;
 }
 
-/// Likewise up to shortly before another corner strikes.
+/// Steps of a run up to shortly before another corner strikes that its contact does not take part in.
 int steps_without_contact(const System& system, const TimeStepping& mode) {
   const std::optional<double> strike = strike_while_closed(system, 1.0);
   EXPECT_TRUE(strike);
