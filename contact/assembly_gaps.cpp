@@ -35,7 +35,7 @@ std::span<Constraint> AssemblyGaps::find(double margin) {
   contacts_.clear();
   const ContactQuery query{state_->view(), *evaluation_, bodies_->places, nullptr, margin};
   bodies_->detector.find(bodies_->components, query, contacts_);
-  if (bodies_->touch) bodies_->detector.bodies().find(query, search_, contacts_);
+  if (bodies_->touch) bodies_->detector.find_between_bodies(query, search_, contacts_);
   if (bodies_->all) return contacts_;
   contacts_.remove_if([&](const Constraint& contact) {
     return !std::binary_search(wanted_.begin(), wanted_.end(), pair_of(contact.key));

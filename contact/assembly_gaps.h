@@ -3,7 +3,7 @@
 /// \file
 /// Gaps of the bodies of an assembled model, which its joints bind (gap_source.h).
 
-#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/gap_source.h>
 #include <carom/contact/separation.h>

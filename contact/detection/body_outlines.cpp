@@ -54,6 +54,8 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
   }
   std::stable_sort(list_.begin(), list_.end(),
                    [](const BodyOutline& a, const BodyOutline& b) { return a.body < b.body; });
+  in_order_of_keys_ = std::is_sorted(list_.begin(), list_.end(),
+                                     [](const auto& one, const auto& other) { return one.key < other.key; });
   outline_of_.resize(vertices_.size());
   for (Index i = 0; i < list_.size(); ++i) {
     const FeatureKey& key = list_[i].key;
@@ -98,19 +100,6 @@ Index BodyOutlines::find(const FeatureKey& key) const {
     if (list_[i].has(key)) return i;
   }
   return none;
-}
-
-std::optional<ContactPair> BodyOutlines::pair_of(const ConstraintKey& key) const {
-  if (key.b.owner != FeatureKey::Owner::shape) return {};
-  const Index a = find(key.a), b = find(key.b);
-  if (a == none || b == none) return {};
-  const bool of_a = key.a != list_[a].surface();
-  const BodyOutline &of_vertex = list_[of_a ? a : b], &whole = list_[of_a ? b : a];
-  return ContactPair{.body = of_vertex.body,
-                     .feature = of_vertex.place(of_a ? key.a : key.b),
-                     .material = of_vertex.material,
-                     .other = whole.body,
-                     .outline = of_a ? b : a};
 }
 
 void BodyOutlines::place(const BodyOutline& outline, const BodySlot& body, const StateView& state,

@@ -3,7 +3,6 @@
 /// \file
 /// Convex outlines of the bodies of an assembly, which bodies may touch each other with. Collected once.
 
-#include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/convex_outline.h>
 #include <carom/contact/detection/outline_features.h>
 #include <carom/core/assembly.h>
@@ -14,7 +13,6 @@
 #include <carom/core/space.h>
 #include <carom/core/state.h>
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +28,8 @@ struct BodyOutline : OutlineFeatures {
 
   /// True of a point without radius. Two of them do not touch each other.
   [[nodiscard]] bool is_point() const { return vertices.size() == 1 && radius == 0.0; }
+  /// True if it has sides: a polygon that is not rounded.
+  [[nodiscard]] bool has_sides() const { return vertices.size() > 2 && radius == 0.0; }
 };
 
 /// All outlines, ordered by body.
@@ -54,10 +54,10 @@ public:
   [[nodiscard]] const std::vector<MaterialId>& materials() const { return materials_; }
   /// True if a vertex stands off the centre of mass.
   [[nodiscard]] bool any_off_centre() const;
+  /// True if those of lesser keys come first.
+  [[nodiscard]] bool are_in_order_of_keys() const { return in_order_of_keys_; }
   /// Place of the outline of a key; `none` if there is none.
   [[nodiscard]] Index find(const FeatureKey& key) const;
-  /// The vertex and the outline that the key of a contact of two bodies names; of other keys nothing.
-  [[nodiscard]] std::optional<ContactPair> pair_of(const ConstraintKey& key) const;
 
   /// Writes the vertices of an outline where its body is. The position group of `evaluation` must be up to
   /// date. \param out as many points as it has vertices
@@ -74,6 +74,7 @@ private:
   std::vector<MaterialId> materials_;
   // First outlines of bodies that touch at their centres, and of shapes, by serial number; none: it has none.
   std::vector<Index> of_body_, of_shape_;
+  bool in_order_of_keys_ = true;
 };
 
 }  // namespace carom

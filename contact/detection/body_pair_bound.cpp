@@ -15,34 +15,33 @@ double farthest_of(const ConvexOutline& outline) {
   return farthest;
 }
 
-BodyPairBound bound_of_bodies(const Assembly& assembly, const BodyOutlines& outlines,
-                              const ContactPair& pair) {
-  const BodyOutline& of_vertex = outlines.list()[outlines.outline_of(pair.feature)];
-  const BodyOutline& outline = outlines.list()[pair.outline];
+BodyPairBound bound_of_bodies(const Outlines& outlines, const ContactPair& pair) {
+  const BodyOutlines& of_bodies = outlines.of_bodies();
+  const BodyOutline& of_vertex = of_bodies.list()[outlines.outline_of(pair.feature)];
+  const BodyOutline& outline = of_bodies.list()[pair.outline];
   BodyPairBound bound;
-  bound.a = assembly.layout()->bodies()[pair.body];
-  bound.b = assembly.layout()->bodies()[pair.other];
-  bound.lever = outlines.vertices()[pair.feature].norm();
+  bound.a = outlines.slots()[pair.body];
+  bound.b = outlines.slots()[pair.other];
+  bound.lever = of_bodies.vertices()[pair.feature].norm();
   bound.radius = of_vertex.radius;
   bound.rounding = of_vertex.radius + outline.radius;
-  const double farthest = farthest_of(outlines.described(outline));
+  const double farthest = farthest_of(of_bodies.described(outline));
   bound.reach = farthest + outline.radius;
   bound.round = outline.vertices.size() == 1;
   bound.central = bound.round && bound.lever == 0.0 && farthest == 0.0;
   return bound;
 }
 
-BodyPairBound bound_on_ground(const Assembly& assembly, const PieceContacts& contacts,
-                              const ContactPair& pair) {
-  const BodyOutlines& outlines = contacts.outlines();
-  const GroundPieces& pieces = contacts.pieces();
+BodyPairBound bound_on_ground(const Outlines& outlines, const ContactPair& pair) {
+  const BodyOutlines& of_bodies = outlines.of_bodies();
+  const GroundPieces& pieces = outlines.on_ground();
   BodyPairBound bound;
-  bound.a = assembly.layout()->bodies()[pair.body];
+  bound.a = outlines.slots()[pair.body];
   bound.on_ground = true;
-  if (pair.ground_outline != none) {
-    const GroundOutline& touched = pieces.outlines()[pair.ground_outline];
-    bound.lever = outlines.vertices()[pair.feature].norm();
-    bound.radius = outlines.list()[outlines.outline_of(pair.feature)].radius;
+  if (outlines.is_on_ground(pair.outline)) {
+    const GroundOutline& touched = pieces.outlines()[outlines.on_ground(pair.outline)];
+    bound.lever = of_bodies.vertices()[pair.feature].norm();
+    bound.radius = of_bodies.list()[outlines.outline_of(pair.feature)].radius;
     bound.box = touched.box;
     bound.reach = touched.reach;
     bound.round = touched.vertices.size() == 1;
@@ -53,10 +52,11 @@ BodyPairBound bound_on_ground(const Assembly& assembly, const PieceContacts& con
     }
     return bound;
   }
-  const BodyOutline& outline = outlines.list()[pair.outline];
-  const Vec<2>& vertex = pieces.vertices()[pair.ground_vertex];
-  const double radius = pieces.outlines()[pieces.outline_of(pair.ground_vertex)].radius;
-  bound.lever = farthest_of(outlines.described(outline));
+  const BodyOutline& outline = of_bodies.list()[pair.outline];
+  const Index on_ground = outlines.ground_vertex(pair.feature);
+  const Vec<2>& vertex = pieces.vertices()[on_ground];
+  const double radius = pieces.outlines()[pieces.outline_of(on_ground)].radius;
+  bound.lever = farthest_of(of_bodies.described(outline));
   bound.radius = outline.radius;
   bound.rounding = outline.radius + radius;
   bound.round = outline.vertices.size() == 1;
@@ -67,9 +67,8 @@ BodyPairBound bound_on_ground(const Assembly& assembly, const PieceContacts& con
 
 }  // namespace
 
-BodyPairBound bound_of_pair(const Assembly& assembly, const Detector& detector, const ContactPair& pair) {
-  return pair.is_of_pieces() ? bound_on_ground(assembly, detector.pieces(), pair)
-                             : bound_of_bodies(assembly, detector.bodies().outlines(), pair);
+BodyPairBound bound_of_pair(const Outlines& outlines, const ContactPair& pair) {
+  return pair.is_of_pieces() ? bound_on_ground(outlines, pair) : bound_of_bodies(outlines, pair);
 }
 
 double BodyPairBound::least_gap(const StateView& state, const GroundMotion* motion) const {

@@ -5,7 +5,7 @@
 
 #include <carom/contact/detection/box.h>
 #include <carom/contact/detection/contact_pair.h>
-#include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/outlines.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/core/layout.h>
@@ -43,7 +43,6 @@ struct CAROM_API BodyPairBound {
 };
 
 /// The bounds of a pair with an outline (ContactPair::has_outline()).
-[[nodiscard]] CAROM_API BodyPairBound bound_of_pair(const Assembly& assembly, const Detector& detector,
-                                                    const ContactPair& pair);
+[[nodiscard]] CAROM_API BodyPairBound bound_of_pair(const Outlines& outlines, const ContactPair& pair);
 
 }  // namespace carom

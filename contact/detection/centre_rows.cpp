@@ -1,13 +1,13 @@
 // Problem: which bodies are near ground, by their centres alone.
 
-#include <carom/contact/detection/ground_contacts.h>
+#include <carom/contact/detection/point_contacts.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace carom {
 
-bool GroundContacts::may_touch(const CentreRow& row, const double* q) const {
+bool PointContacts::may_touch(const CentreRow& row, const double* q) const {
   bool may = false;
   for (Index first = 0; first < row.count; first += PointRow::most) {
     const Index count = std::min(row.count - first, PointRow::most);
@@ -17,7 +17,7 @@ bool GroundContacts::may_touch(const CentreRow& row, const double* q) const {
   return may;
 }
 
-std::vector<CentreRow> GroundContacts::centre_rows(double margin) const {
+std::vector<CentreRow> PointContacts::centre_rows(double margin) const {
   std::vector<CentreRow> rows;
   for (const CentreRun& run : features_.centres()) {
     const BodySlot first = assembly_->layout()->bodies()[run.bodies.begin];
@@ -46,7 +46,7 @@ std::vector<CentreRow> GroundContacts::centre_rows(double margin) const {
   return rows;
 }
 
-bool GroundContacts::centres_tell() const {
+bool PointContacts::centres_tell() const {
   const auto is_flat = [&](Index shape) { return shapes_.is_flat(shape); };
   return std::all_of(features_.points().begin(), features_.points().end(), [&](const BodyFeature& point) {
     const std::span<const Index> touched = laws_.touched_by(point.material);

@@ -17,15 +17,16 @@ void Detector::find(Index component, const StateView& state, const Evaluation& e
 
 void Detector::find(Range components, const ContactQuery& query, ConstraintSet& out) const {
   assert(!has_moving_ground() || query.places.time() == query.state.time);
-  if (!pieces_.empty()) {
+  if (outlines_.ground_touches()) {
     for (Index component = components.begin; component < components.end; ++component) {
-      ground_.find({component, component + 1}, query, out);
-      pieces_.find(component, query, out);
+      points_.find({component, component + 1}, query, out);
+      const Range bodies = assembly_->bodies_of({component, component + 1});
+      for (Index body = bodies.begin; body < bodies.end; ++body) on_ground_.find(outlines_, body, query, out);
       if (!joints_.empty()) joints_.find_limits(component, query, out);
     }
     return;
   }
-  ground_.find(components, query, out);
+  points_.find(components, query, out);
   if (joints_.empty()) return;
   for (Index component = components.begin; component < components.end; ++component) {
     joints_.find_limits(component, query, out);
@@ -53,7 +54,7 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
   out.start(step, slack);
   const bool no_slack = out.slack() == 0.0;
   const Layout& layout = *assembly_->layout();
-  const GroundShapes& shapes = ground_.shapes();
+  const GroundShapes& shapes = points_.shapes();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ConstraintKey& key = contacts[i].first;
     const LastingContacts::Pressed pressed = pressed_of(contacts, i);
@@ -64,7 +65,7 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
     }
     // A centre of mass has no arm: but for slack only a shape that turns, or is curved, can open such a
     // contact.
-    if (no_slack && !shapes.any_moves() && pieces_.empty()) continue;
+    if (no_slack && !shapes.any_moves() && !outlines_.ground_touches()) continue;
     const Index shape = shapes.find(key.b.serial);
     if (shape != none && shapes.has_pieces(shape)) {
       out.add(key, pressed);
@@ -80,14 +81,25 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
 
 void Detector::find_all(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const {
   find(Range{0, static_cast<Index>(assembly_->components().size())}, query, out);
-  if (bodies_touch()) bodies_.find(query, memory, out);
+  find_between_bodies(query, memory, out);
+}
+
+void Detector::find_between_bodies(const ContactQuery& query, BodyContactSearch& memory,
+                                   ConstraintSet& out) const {
+  for (const Touch& touch : find_body_touches(outlines_, query, memory))
+    outlines_.write(touch, query, out.add_contact());
+}
+
+void Detector::find_of(Index body, const ContactQuery& query, ConstraintSet& out) const {
+  points_.find_of(body, query, out);
+  if (outlines_.ground_touches()) on_ground_.find(outlines_, body, query, out);
 }
 
 std::vector<ContactPair> Detector::pairs(Index component) const {
   std::vector<ContactPair> out;
-  ground_.append_pairs(component, out);
-  if (!pieces_.empty()) {
-    pieces_.append_pairs(component, out);
+  points_.append_pairs(component, out);
+  if (outlines_.ground_touches()) {
+    on_ground_.append_pairs(outlines_, assembly_->bodies_of({component, component + 1}), out);
     std::stable_sort(out.begin(), out.end(),
                      [](const ContactPair& a, const ContactPair& b) { return a.body < b.body; });
   }
@@ -106,32 +118,15 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
     return;
   }
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
-  if (pair.has_outline()) return write_contact(sides(pair, state, evaluation, places), state, out);
-  ground_.contact(pair, state, evaluation, ground_.shapes().motion(pair.ground_shape, places), out);
-}
-
-PairSides Detector::sides(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                          const GroundPlaces& places) const {
-  if (!pair.is_of_pieces()) return bodies_.sides(pair, state, evaluation);
-  return pieces_.sides(pair, state, evaluation, places);
+  if (pair.has_outline()) return write_contact(outlines_.sides(pair, state, evaluation, places), state, out);
+  points_.contact(pair, state, evaluation, points_.shapes().motion(pair.ground_shape, places), out);
 }
 
 std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }
 
-std::optional<ContactPair> pair_of(const Detector& detector, const ConstraintKey& key) {
-  if (key.b.owner == FeatureKey::Owner::obstacle) return detector.pieces().pair_of(key);
-  return detector.bodies().outlines().pair_of(key);
-}
-
 void follow(const Detector& detector, const ContactPair& pair, Index feature, const StateView& state,
             const Evaluation& evaluation, const GroundPlaces& places, Constraint& contact) {
-  follow(detector.sides(pair, state, evaluation, places), feature, contact);
-}
-
-OutlinePair outline_pair(const Detector& detector, const ContactPair& pair, const StateView& state,
-                         const Evaluation& evaluation, const GroundPlaces& places) {
-  if (!pair.is_of_pieces()) return detector.bodies().outline_pair(pair, state, evaluation);
-  return detector.pieces().outline_pair(pair, state, evaluation, places);
+  follow(detector.outlines().sides(pair, state, evaluation, places), feature, contact);
 }
 
 }  // namespace carom

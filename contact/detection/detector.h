@@ -4,13 +4,14 @@
 /// Finds where things touch: bodies and shapes on ground, or two bodies, whose gap is closed (Johansson 1999,
 /// section 4: violated contacts take part in a step), joints at their limits, and dry friction in joints.
 
-#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/feature_region.h>
-#include <carom/contact/detection/ground_contacts.h>
+#include <carom/contact/detection/ground_touches.h>
 #include <carom/contact/detection/joint_rows.h>
-#include <carom/contact/detection/piece_contacts.h>
+#include <carom/contact/detection/outlines.h>
+#include <carom/contact/detection/point_contacts.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint_set.h>
 #include <carom/core/discontinuity.h>
@@ -31,26 +32,26 @@ public:
   /// \param lengths to which features of outlines are told apart
   explicit Detector(const Assembly& assembly, const FeatureLengths& lengths = {})
       : assembly_(&assembly),
-        ground_(assembly),
-        pieces_(assembly, lengths),
-        bodies_(assembly, lengths),
+        points_(assembly),
+        outlines_(assembly, lengths),
+        on_ground_(outlines_),
         joints_(assembly) {}
 
   /// True if a shape on ground moves.
-  [[nodiscard]] bool has_moving_ground() const { return ground_.shapes().any_moves(); }
+  [[nodiscard]] bool has_moving_ground() const { return points_.shapes().any_moves(); }
   /// As GroundShapes::place().
-  void place(double time, GroundPlaces& places) const { ground_.shapes().place(time, places); }
+  void place(double time, GroundPlaces& places) const { points_.shapes().place(time, places); }
   /// As GroundShapes::demand_continuous().
   void demand_continuous(const GroundPlaces& before, const GroundPlaces& after) const {
-    ground_.shapes().demand_continuous(before, after);
+    points_.shapes().demand_continuous(before, after);
   }
   /// As GroundShapes::list_jumps().
   void list_jumps(double from, double to, std::vector<GroundJump>& out) const {
-    ground_.shapes().list_jumps(from, to, out);
+    points_.shapes().list_jumps(from, to, out);
   }
   /// As GroundShapes::discontinuities().
   [[nodiscard]] std::vector<Discontinuity> discontinuities() const {
-    return ground_.shapes().discontinuities();
+    return points_.shapes().discontinuities();
   }
 
   /// Appends the contacts of one component whose gap is <= `margin` [m]: with shapes on ground without
@@ -74,21 +75,19 @@ public:
   /// query asks for: component by component where shapes on ground have pieces, otherwise all contacts before
   /// all limits.
   void find(Range components, const ContactQuery& query, ConstraintSet& out) const;
-  /// Appends the contacts of all components that a query asks for, and then those of bodies with each other.
+  /// Appends what find() does of all components, and the contacts of bodies with each other.
   void find_all(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const;
-  /// True if bodies may touch each other.
-  [[nodiscard]] bool bodies_touch() const { return !bodies_.empty(); }
-  /// Contacts of bodies with each other.
-  [[nodiscard]] const BodyContacts& bodies() const { return bodies_; }
+  /// Appends the contacts of bodies with each other that a query asks for, ordered by the first outline, then
+  /// the second one, in the order of assembly.
+  void find_between_bodies(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const;
   /// Appends the contacts of one body with shapes on ground that a query asks for.
-  void find_of(Index body, const ContactQuery& query, ConstraintSet& out) const {
-    ground_.find_of(body, query, out);
-    if (!pieces_.empty()) pieces_.find_of(body, query, out);
-  }
-  /// Contacts of bodies with pieces of shapes on ground.
-  [[nodiscard]] const PieceContacts& pieces() const { return pieces_; }
-  /// Contacts of bodies with shapes on ground that have no pieces.
-  [[nodiscard]] const GroundContacts& ground() const { return ground_; }
+  void find_of(Index body, const ContactQuery& query, ConstraintSet& out) const;
+  /// True if bodies may touch each other.
+  [[nodiscard]] bool bodies_touch() const { return outlines_.bodies_touch(); }
+  /// Outlines of bodies and on ground, and what the contacts of two of them are.
+  [[nodiscard]] const Outlines& outlines() const { return outlines_; }
+  /// Contacts of rounded points of bodies with shapes on ground that have no pieces.
+  [[nodiscard]] const PointContacts& points() const { return points_; }
   /// Limits of joints, and friction in them.
   [[nodiscard]] const JointRows& joints() const { return joints_; }
   /// Says which contacts of a step turning may have opened. \param contacts of the step, as
@@ -104,19 +103,16 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundPlaces& places, Constraint& out) const;
 
-  /// The two sides of a pair that has an outline (ContactPair::has_outline()).
-  [[nodiscard]] PairSides sides(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                                const GroundPlaces& places) const;
-
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
-    return ground_.law_facts().static_friction || bodies_.law_facts().static_friction ||
+    return points_.law_facts().static_friction || outlines_.laws().facts_of_bodies().static_friction ||
            joints_.has_friction();
   }
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass, or a joint has
   /// limits or friction.
   [[nodiscard]] bool needs_rotations() const {
-    return !joints_.empty() || ground_.needs_rotations() || bodies_.needs_rotations();
+    return !joints_.empty() || points_.needs_rotations() ||
+           (bodies_touch() && outlines_.of_bodies().any_off_centre());
   }
 
   /// As contact_name() of the assembly's system.
@@ -124,54 +120,47 @@ public:
 
 private:
   const Assembly* assembly_;
-  GroundContacts ground_;
-  PieceContacts pieces_;
-  BodyContacts bodies_;
+  PointContacts points_;
+  Outlines outlines_;
+  GroundTouches on_ground_;
   JointRows joints_;
 };
 
 /// True if some law of impact is not Newton's.
 [[nodiscard]] inline bool has_other_impact_law(const Detector& detector) {
-  return detector.ground().law_facts().other_impact_law || detector.bodies().law_facts().other_impact_law;
+  return detector.points().law_facts().other_impact_law ||
+         detector.outlines().laws().facts_of_bodies().other_impact_law;
 }
 /// True if some law has rolling resistance.
 [[nodiscard]] inline bool resists_rolling(const Detector& detector) {
-  return detector.ground().law_facts().rolling_resistance || detector.bodies().law_facts().rolling_resistance;
+  return detector.points().law_facts().rolling_resistance ||
+         detector.outlines().laws().facts_of_bodies().rolling_resistance;
 }
 /// True if the law of a pair of shapes has rolling resistance. False of the pair that stands for that
 /// resistance, and of joints.
 [[nodiscard]] inline bool resists_rolling(const Detector& detector, const ContactPair& pair) {
   if (pair.joint_row != none || pair.rolling) return false;
-  if (pair.other != none) return detector.bodies().law(pair).resists_rolling();
-  return (pair.is_of_pieces() ? detector.pieces().law(pair) : detector.ground().law(pair)).resists_rolling();
+  return (pair.outline != none ? detector.outlines().law(pair) : detector.points().law(pair))
+      .resists_rolling();
 }
-/// True if all that can touch are bodies and ground at rest, and GroundContacts::centre_rows() tell what may.
+/// True if all that can touch are bodies and ground at rest, and PointContacts::centre_rows() tell what may.
 [[nodiscard]] inline bool centres_tell(const Detector& detector) {
-  return detector.bodies().empty() && detector.pieces().empty() && detector.joints().empty() &&
-         !detector.has_moving_ground() && detector.ground().centres_tell();
+  return !detector.bodies_touch() && !detector.outlines().ground_touches() && detector.joints().empty() &&
+         !detector.has_moving_ground() && detector.points().centres_tell();
 }
 /// True if the shape on ground of a pair moves.
 [[nodiscard]] inline bool moves(const Detector& detector, const ContactPair& pair) {
-  return pair.ground_shape != none && detector.pieces().shapes().moves(pair.ground_shape);
+  return pair.ground_shape != none && detector.outlines().shapes().moves(pair.ground_shape);
 }
 /// Motion of the shape on ground of a pair; null if there is none or it is at rest.
 [[nodiscard]] inline const GroundMotion* motion_of(const Detector& detector, const ContactPair& pair,
                                                    const GroundPlaces& places) {
-  return moves(detector, pair) ? detector.pieces().shapes().motion(pair.ground_shape, places) : nullptr;
+  return moves(detector, pair) ? detector.outlines().shapes().motion(pair.ground_shape, places) : nullptr;
 }
-/// The vertex and the outline that the key of a contact names, where both sides are outlines; of other keys
-/// nothing.
-[[nodiscard]] CAROM_API std::optional<ContactPair> pair_of(const Detector& detector,
-                                                           const ConstraintKey& key);
 /// Brings rows, gap and drift of a contact of a pair to a state, as long as its vertex stays with one feature
 /// of its outline (ConvexOutline), whichever is the nearest: a smooth function of the motion. Key and law
 /// stay.
 CAROM_API void follow(const Detector& detector, const ContactPair& pair, Index feature,
                       const StateView& state, const Evaluation& evaluation, const GroundPlaces& places,
                       Constraint& contact);
-/// The vertex and the outline of a pair that has one (ContactPair::has_outline()).
-[[nodiscard]] CAROM_API OutlinePair outline_pair(const Detector& detector, const ContactPair& pair,
-                                                 const StateView& state, const Evaluation& evaluation,
-                                                 const GroundPlaces& places);
-
 }  // namespace carom

@@ -64,7 +64,7 @@ private:
       return out;
     }
     const OutlinePair outlines =
-        outline_pair(pair_->detector, pair_->pair, at.state, at.evaluation, at.places);
+        pair_->detector.outlines().outline_pair(pair_->pair, at.state, at.evaluation, at.places);
     const FeatureRegions regions(outlines);
     // So has ground that a vertex has come through, or whose depth ends: beyond it the gap is positive again.
     has_two_sides_ = outlines.chain || (outlines.is_sharp() && FeatureRegions::is_flat(outlines.outline));

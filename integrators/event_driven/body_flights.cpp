@@ -33,7 +33,7 @@ BodyFlights::BodyFlights(const Assembly& assembly, const Detector& detector)
     : assembly_(&assembly),
       flights_(assembly.layout()->bodies().size()),
       horizons_(assembly.components().size(), 0.0) {
-  for (const BodyOutline& outline : detector.bodies().outlines().list()) {
+  for (const BodyOutline& outline : detector.outlines().of_bodies().list()) {
     BodyFlight& flight = flights_[outline.body];
     flight.reach = std::max(flight.reach, outline.reach);
     flight.component = assembly.component_of(outline.body);

@@ -43,12 +43,11 @@ std::vector<ContactPair> pairs_of(const Assembly& assembly, const Detector& dete
   return all;
 }
 
-std::vector<BodyPairBound> bounds_of(const Assembly& assembly, const Detector& detector,
-                                     const std::vector<ContactPair>& pairs) {
+std::vector<BodyPairBound> bounds_of(const Detector& detector, const std::vector<ContactPair>& pairs) {
   std::vector<BodyPairBound> bounds;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!pairs[i].has_outline()) continue;
-    bounds.push_back(bound_of_pair(assembly, detector, pairs[i]));
+    bounds.push_back(bound_of_pair(detector.outlines(), pairs[i]));
     bounds.back().pair = i;
   }
   return bounds;
@@ -148,7 +147,7 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
       options(&options_in),
       unknowns(assembly_in, group.components, works_of(detector_in, group)),
       pairs(pairs_of(assembly_in, detector_in, group, joints)),
-      bounds(bounds_of(assembly_in, detector_in, pairs)),
+      bounds(bounds_of(detector_in, pairs)),
       tolerances(
           std::make_shared<const std::vector<double>>(tolerances_of(*this, options->absolute_tolerance))) {
   if (!bounds.empty()) bound_places_.assign(pairs.size(), none);

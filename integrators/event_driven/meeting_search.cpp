@@ -132,7 +132,7 @@ double MeetingSearch::noise(const Bodies& bodies, const BodyPairBound& bound) co
 }
 
 double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, double end) {
-  const BodyPairBound bound = bound_of_pair(*assembly_, *detector_, pair);
+  const BodyPairBound bound = bound_of_pair(detector_->outlines(), pair);
   if (!bound.closes_alone()) return never;
   const PairGap gap{*detector_, pair, &bound};
   ClosingRule rule;
@@ -172,7 +172,7 @@ double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, const Bodie
   groups_->pairs().append(numbers, pairs_);
   double least = never;
   for (const ContactPair& pair : pairs_) {
-    const BodyPairBound bound = bound_of_pair(*assembly_, *detector_, pair);
+    const BodyPairBound bound = bound_of_pair(detector_->outlines(), pair);
     const PairGap gap{*detector_, pair, &bound};
     if (bodies.a.is_free && bodies.b.is_free && bound.central) {
       const Vec<2> apart = bodies.a.place_at(time) - bodies.b.place_at(time);

@@ -82,7 +82,7 @@ OverlapCheck::Deepest OverlapCheck::find_deepest(const State& state, const Evalu
     detector_->find(Range{component, component + 1}, query, found_);
     judge();
   }
-  if (detector_->bodies_touch()) detector_->bodies().find(query, search_, found_);
+  detector_->find_between_bodies(query, search_, found_);
   judge();
   return deepest;
 }

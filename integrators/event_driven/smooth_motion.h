@@ -61,7 +61,8 @@ public:
   void contact_if_near(std::size_t pair, const MotionSample& at, double near, Constraint& out) const;
   /// Regions of the features of the outline of a pair in a sample.
   [[nodiscard]] FeatureRegions regions(const ContactPair& pair, const MotionSample& at) const {
-    return FeatureRegions(outline_pair(*model_.detector, pair, at.view(), at.evaluation, at.places));
+    return FeatureRegions(
+        model_.detector->outlines().outline_pair(pair, at.view(), at.evaluation, at.places));
   }
   /// Writes the guards of the group's elements in a sample, with derivatives.
   void read_guards(const MotionSample& at, std::vector<GuardMotion>& out);

@@ -59,7 +59,7 @@ double ClosingSearch::gap_at_start(const Constraint& contact, double reach) cons
 /// minus infinity [m].
 double ClosingSearch::gap_of_vertex(const Constraint& contact, const State& start) {
   std::optional<ContactPair> pair;
-  if (contact.type == ConstraintType::contact) pair = pair_of(look_.detector(), contact.key);
+  if (contact.type == ConstraintType::contact) pair = look_.detector().outlines().pair_of(contact.key);
   if (!pair) return -std::numeric_limits<double>::infinity();
   SingleConstraint at;
   look_.contact(*pair, start.view(), at);

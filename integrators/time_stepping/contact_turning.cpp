@@ -185,7 +185,7 @@ bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, co
   } else {
     const Constraint *const halfway = find_in(found_.middle, turned.start), *const last = find_in(
                                                                                 found_.end, turned.start);
-    const double same_place = look_.detector().pieces().pieces().lengths().corner;
+    const double same_place = look_.detector().outlines().on_ground().lengths().corner;
     if (halfway == nullptr || last == nullptr) return false;  // it has parted
     const Constraint* const on_way = become_of(turned.start, *halfway, found_.middle, same_place);
     const Constraint* const at_end = become_of(turned.start, *last, found_.end, same_place);

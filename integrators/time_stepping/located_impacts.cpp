@@ -66,7 +66,7 @@ LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detecto
       detector_(&detector),
       jumps_(assembly),
       on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
-      of_one_piece_(detector.pieces().empty() && detector.joints().empty()),
+      of_one_piece_(!detector.outlines().ground_touches() && detector.joints().empty()),
       rules_{options.most_impacts, CaptureRule::of(assembly, options), gap_rounding(assembly, options),
              turning_rounding(options), options.impact_rules},
       budget_(budget_of(options)) {}
@@ -132,7 +132,7 @@ bool LocatedImpacts::take_up(const StepInput& in, Range components, std::span<co
   const Range bodies = assembly_->bodies_of(components);
   // Where all that bodies can touch takes part nothing else can hit them.
   const bool all_take_part =
-      of_one_piece_ && count_of(bodies, contacts) == detector_->ground().count_pairs(components);
+      of_one_piece_ && count_of(bodies, contacts) == detector_->points().count_pairs(components);
   const bool any_held = std::any_of(contacts.begin(), contacts.end(), [&](const Constraint& contact) {
     return acts_within(in, contact, rules_);
   });

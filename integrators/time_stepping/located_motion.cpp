@@ -251,7 +251,8 @@ bool LocatedMotion::turn(const LocatedBody& at, MotionPhase& flight) {
   for (const Constraint& contact : flight.constraints) turned_.push_back(contact.key);
   const auto find = [&](double share, ConstraintSet& out) {
     FlightLook::go(at, flight, share);
-    take_turned(look_.find(at, share, turned_, false), at.detector.pieces().pieces().lengths().corner, out);
+    take_turned(look_.find(at, share, turned_, false), at.detector.outlines().on_ground().lengths().corner,
+                out);
   };
   find(0.5 * (flight.begin + flight.end), of_flight_.next_middle);
   find(flight.end, of_flight_.next_end);

@@ -55,21 +55,16 @@ PassageSearch::PassageSearch(const Assembly& assembly, const Detector& detector,
       at_(assembly.initial_state()) {
   reach_.assign(assembly.layout()->bodies().size(), 0.0);
   displacement_.resize(at_.v.size());
-  const auto add_all = [&](const BodyOutlines& outlines) {
-    for (const BodyOutline& outline : outlines.list()) {
-      add(outline.key, {circle_in(outlines.described(outline)), false});
-      // Only the vertices turn: the radius around them is the same on all sides.
-      reach_[outline.body] = std::max(reach_[outline.body], outline.reach - outline.radius);
-    }
-  };
-  if (detector.bodies_touch()) add_all(detector.bodies().outlines());
-  if (!detector.pieces().empty()) {
-    add_all(detector.pieces().outlines());
-    const GroundPieces& pieces = detector.pieces().pieces();
-    for (Index i = 0; i < pieces.outlines().size(); ++i) {
-      const GroundOutline& of = pieces.outlines()[i];
-      add(of.key, {circle_in(pieces, i, which), of.is_hollow()});
-    }
+  const BodyOutlines& bodies = detector.outlines().of_bodies();
+  for (const BodyOutline& outline : bodies.list()) {
+    add(outline.key, {circle_in(bodies.described(outline)), false});
+    // Only the vertices turn: the radius around them is the same on all sides.
+    reach_[outline.body] = std::max(reach_[outline.body], outline.reach - outline.radius);
+  }
+  const GroundPieces& pieces = detector.outlines().on_ground();
+  for (Index i = 0; detector.outlines().ground_touches() && i < pieces.outlines().size(); ++i) {
+    const GroundOutline& of = pieces.outlines()[i];
+    add(of.key, {circle_in(pieces, i, which), of.is_hollow()});
   }
   set_thinnest();
 }
@@ -163,11 +158,11 @@ double PassageSearch::most_approach(const State& start, const State& end) {
   if (!look_.detector().has_moving_ground()) return most;
   // Of ground twice what its speed at either end makes of it.
   double fastest = 0.0;
-  const GroundPieces& pieces = look_.detector().pieces().pieces();
+  const GroundPieces& pieces = look_.detector().outlines().on_ground();
   for (const GroundOutline& outline : pieces.outlines()) {
-    if (!look_.detector().pieces().shapes().moves(outline.shape)) continue;
+    if (!look_.detector().outlines().shapes().moves(outline.shape)) continue;
     for (const double time : {start.time, end.time}) {
-      const GroundMotion motion = look_.detector().pieces().shapes().motion(outline.shape, time);
+      const GroundMotion motion = look_.detector().outlines().shapes().motion(outline.shape, time);
       fastest = std::max(fastest, std::hypot(motion.velocity[0], motion.velocity[1]) +
                                       outline.reach * std::abs(motion.spin));
     }

@@ -14,7 +14,7 @@
 /// 2). Inside a circle, which is not convex from within, c is the whole rate of the translation. Of moving
 /// ground the velocity at the look is taken, and twice what it changes up to the step's end.
 
-#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/contact_look.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>

@@ -23,7 +23,7 @@ bool ends_at_rounding(const TimeStepping& options) {
 /// True if turning can open contacts: of a feature on an arm, on ground that moves or is curved, of two
 /// bodies, of outlines, at limits (contact/detection/lasting_contacts.h).
 bool turning_opens(const Detector& detector) {
-  const GroundShapes& shapes = detector.pieces().shapes();
+  const GroundShapes& shapes = detector.outlines().shapes();
   bool curved = false;
   for (Index shape = 0; shape < shapes.size(); ++shape) {
     curved = curved || shapes.has_pieces(shape) || !shapes.is_flat(shape);
@@ -31,14 +31,15 @@ bool turning_opens(const Detector& detector) {
   return curved || detector.needs_rotations() || detector.bodies_touch() || detector.has_moving_ground();
 }
 
-/// True if all contacts are those that GroundContacts finds, as they are.
+/// True if all contacts are those that PointContacts finds, as they are.
 bool is_plain(const Detector& detector) {
   return centres_tell(detector) && !detector.has_static_friction() && !resists_rolling(detector);
 }
 
 /// True if some surface takes more to slip than to slide.
 bool sticks(const Detector& detector) {
-  return detector.ground().law_facts().static_friction || detector.bodies().law_facts().static_friction;
+  return detector.points().law_facts().static_friction ||
+         detector.outlines().laws().facts_of_bodies().static_friction;
 }
 
 /// Friction in joints takes the restitution of what approaches fastest in its island.
@@ -155,7 +156,7 @@ bool StepConstraints::is_freed(const StepInput& in, bool of_corners, Constraint&
 
 /// Takes those that do not act out of a list, from its place `first` on.
 void StepConstraints::free_parting(const StepInput& in, std::size_t first, ConstraintSet& out) const {
-  const double same_place = detector_.pieces().pieces().lengths().corner;
+  const double same_place = detector_.outlines().on_ground().lengths().corner;
   std::size_t kept = first;
   bool meets_next = false;  // two contacts of corners that meet follow one another
   for (std::size_t i = first; i < out.size(); ++i) {
@@ -230,7 +231,7 @@ std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range comp
     find_in(in, components, trial, single_);
     return single_;
   }
-  detector_.ground().find(components, query(in, trial), single_);
+  detector_.points().find(components, query(in, trial), single_);
   if (rules_.parting == Parting::is_free) {
     single_.remove_if([&](Constraint& contact) { return is_freed(in, false, contact); });
   }
@@ -242,12 +243,13 @@ std::span<Constraint> StepConstraints::find_part(const StepInput& in, Range comp
 /// False if there are none.
 bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> batches,
                                    const StepTrial& trial) {
-  const BodyContacts& bodies = detector_.bodies();
-  std::span<const BodyTouch> touching = bodies.find_touching(query(in, trial), search_);
+  const Outlines& outlines = detector_.outlines();
+  const ContactQuery at_start = query(in, trial);
+  std::span<const Touch> touching = find_body_touches(outlines, at_start, search_);
   if (rules_.parting == Parting::is_free) {
-    std::erase_if(search_.touching, [&](const BodyTouch& touch) {
+    std::erase_if(search_.touching, [&](const Touch& touch) {
       SingleConstraint written;
-      bodies.write(touch, in.start.view(), written);
+      outlines.write(touch, at_start, written);
       return is_freed(in, touch.of_corners, written);
     });
     touching = search_.touching;
@@ -274,9 +276,9 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
     }
     if (rules_.drifts) {
       out.start_contact();
-      bodies.write(touching[source], in.start.view(), out);
+      outlines.write(touching[source], at_start, out);
     } else {
-      bodies.write_rows(touching[source], search_, in.start.view(), out);
+      write_rows(outlines, touching[source], search_, in.start.view(), out);
     }
     if (sticks) take_sticking({&out, 1});
     if (rules_.parting == Parting::is_free) static_cast<void>(is_freed(in, touching[source].of_corners, out));
@@ -289,11 +291,12 @@ bool StepConstraints::find_joining(const StepInput& in, std::span<const Range> b
 /// Lists all constraints in the order of the components of their first bodies. Contacts of bodies with each
 /// other come before the others of a component: friction in joints stays last. What has rolling resistance is
 /// listed twice.
-void StepConstraints::merge(const StepInput& in, std::span<const BodyTouch> touching) {
-  const std::vector<BodyOutline>& outlines = detector_.bodies().outlines().list();
+void StepConstraints::merge(const StepInput& in, std::span<const Touch> touching) {
+  const std::vector<BodyOutline>& outlines = detector_.outlines().of_bodies().list();
   const auto count = static_cast<Index>(touching.size());
   const bool one_body_each = in.assembly.components().size() == in.assembly.layout()->bodies().size();
   const auto component_of = [&](Index body) { return one_body_each ? body : in.assembly.component_of(body); };
+  const bool resists = detector_.outlines().laws().facts_of_bodies().rolling_resistance;
   joined_.clear();
   sources_.clear();
   Index next = 0;
@@ -310,7 +313,7 @@ void StepConstraints::merge(const StepInput& in, std::span<const BodyTouch> touc
     add_single_before(first);
     joined_.push_back({first, component_of(outlines[touching[i].b].body)});
     sources_.push_back(i);
-    if (!detector_.bodies().resists_rolling(touching[i])) continue;
+    if (!resists || !detector_.outlines().law(touching[i].a, touching[i].b)->resists_rolling()) continue;
     joined_.push_back(joined_.back());
     sources_.push_back(i);
   }

@@ -69,7 +69,7 @@ public:
   /// False if some components surely have no contact in a step that begin() began, or in an island for which
   /// finds_in_parts() is true.
   [[nodiscard]] bool may_touch(const StepInput& in, Range components, const StepTrial& trial) const {
-    return !rules_.plain || detector_.ground().any_near(components, query(in, trial));
+    return !rules_.plain || detector_.points().any_near(components, query(in, trial));
   }
   /// Finds the contacts of some components in a step that begin() began, or in an island for which
   /// finds_in_parts() is true. Valid until the next call.
@@ -88,7 +88,7 @@ private:
                                   const StepTrial& trial);
   [[nodiscard]] bool is_freed(const StepInput& in, bool of_corners, Constraint& constraint) const;
   void free_parting(const StepInput& in, std::size_t first, ConstraintSet& out) const;
-  void merge(const StepInput& in, std::span<const BodyTouch> touching);
+  void merge(const StepInput& in, std::span<const Touch> touching);
   void add_rolling(std::size_t first, ConstraintSet& out);
   void take_sticking(std::span<Constraint> found) const;
   [[nodiscard]] ContactQuery query(const StepInput& in, const StepTrial& trial) const;

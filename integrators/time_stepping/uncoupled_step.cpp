@@ -18,7 +18,7 @@ namespace {
 bool is_free(const State& state, const Detector& detector, std::span<const CentreRow> rows) {
   const double* const q = state.q.data();
   return std::none_of(rows.begin(), rows.end(),
-                      [&](const CentreRow& row) { return detector.ground().may_touch(row, q); });
+                      [&](const CentreRow& row) { return detector.points().may_touch(row, q); });
 }
 
 /// True if nothing has touched in the step before and surely nothing does at the start of this one.
@@ -68,7 +68,7 @@ bool UncoupledStep::fits(const StepParts& parts) {
 }
 
 UncoupledStep::UncoupledStep(StepParts& parts)
-    : parts_(&parts), rows_(parts.constraints.detector().ground().centre_rows(parts.constraints.margin())) {
+    : parts_(&parts), rows_(parts.constraints.detector().points().centre_rows(parts.constraints.margin())) {
   for (const Range batch : parts.schedule.batches()) {
     // As in every step: components that are taken in one loop are swept.
     const bool alone = batch.size() == 1 && parts.options.iteration != Iteration::automatic;

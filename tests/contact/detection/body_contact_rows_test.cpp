@@ -7,7 +7,7 @@
 
 #include <carom/carom.h>
 #include <carom/contact/contact_velocity.h>
-#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/detector.h>
 
 #include <gtest/gtest.h>
@@ -64,15 +64,15 @@ protected:
 };
 
 TEST_F(BodyContactRows, WithoutDriftTheyHaveTheSameBits) {
-  const BodyContacts& bodies = detector_.bodies();
+  const Outlines& outlines = detector_.outlines();
   BodyContactSearch memory;
   std::size_t contacts = 0;
   for (int i = 0; i < 20; ++i) {
     shake(0.02);
-    for (const BodyTouch& touch : bodies.find_touching(query(nullptr), memory)) {
+    for (const Touch& touch : find_body_touches(outlines, query(nullptr), memory)) {
       SingleConstraint all, rows;
-      bodies.write(touch, model_.state.view(), all);
-      bodies.write_rows(touch, memory, model_.state.view(), rows);
+      outlines.write(touch, query(nullptr), all);
+      write_rows(outlines, touch, memory, model_.state.view(), rows);
       EXPECT_EQ(rows.key, all.key);
       EXPECT_EQ(carom_test::numbers_of(rows), carom_test::numbers_of(all));
       EXPECT_EQ(rows.gap, all.gap);
@@ -96,7 +96,7 @@ TEST_F(BodyContactRows, ProductsWithBothRowsHaveTheBitsOfEach) {
   BodyContactSearch memory;
   ConstraintSet found;
   shake(0.02);
-  detector_.bodies().find(query(nullptr), memory, found);
+  detector_.find_between_bodies(query(nullptr), memory, found);
   ASSERT_GT(found.size(), 10U);
   const double* const v = model_.state.v.data();
   for (Constraint& contact : found) {
@@ -110,7 +110,6 @@ TEST_F(BodyContactRows, ProductsWithBothRowsHaveTheBitsOfEach) {
 }
 
 TEST_F(BodyContactRows, AMemoryOfTheSearchBeforeChangesNothing) {
-  const BodyContacts& bodies = detector_.bodies();
   BodyContactSearch kept;
   std::vector<std::pair<ConstraintKey, ContactMode>> before;
   for (int i = 0; i < 40; ++i) {
@@ -120,8 +119,8 @@ TEST_F(BodyContactRows, AMemoryOfTheSearchBeforeChangesNothing) {
     const LastingContacts* const known = lasting.empty() ? nullptr : &lasting;
     BodyContactSearch fresh;
     ConstraintSet with, without;
-    bodies.find(query(known), kept, with);
-    bodies.find(query(known), fresh, without);
+    detector_.find_between_bodies(query(known), kept, with);
+    detector_.find_between_bodies(query(known), fresh, without);
     ASSERT_EQ(with.size(), without.size()) << i;
     before.clear();
     for (std::size_t c = 0; c < with.size(); ++c) {

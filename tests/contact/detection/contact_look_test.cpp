@@ -63,15 +63,15 @@ TEST_F(ContactLookTest, KeysNameTheirPairs) {
   int of_bodies = 0, of_ground_vertices = 0, of_ground_outlines = 0, without_outlines = 0;
   for (const Constraint& contact : found) {
     SCOPED_TRACE(detector.name(contact.key));
-    const std::optional<ContactPair> pair = pair_of(detector, contact.key);
+    const std::optional<ContactPair> pair = detector.outlines().pair_of(contact.key);
     if (!pair) {
       ++without_outlines;
       EXPECT_NE(detector.name(contact.key).find("half-plane"), std::string::npos);
       continue;
     }
-    ++(pair->other != none           ? of_bodies
-       : pair->ground_vertex != none ? of_ground_vertices
-                                     : of_ground_outlines);
+    ++(pair->other != none                                        ? of_bodies
+       : detector.outlines().ground_vertex(pair->feature) != none ? of_ground_vertices
+                                                                  : of_ground_outlines);
     SingleConstraint again;
     look.contact(*pair, model.state.view(), again);
     EXPECT_EQ(again.key, contact.key);
@@ -88,12 +88,13 @@ TEST_F(ContactLookTest, KeysOfWhatIsNotThereNameNothing) {
   for (const Constraint& contact : found) {
     ConstraintKey other = contact.key;
     other.b.serial += 100;
-    EXPECT_FALSE(pair_of(detector, other)) << detector.name(contact.key);
+    EXPECT_FALSE(detector.outlines().pair_of(other)) << detector.name(contact.key);
     other = contact.key;
     other.a.feature += 100;
-    EXPECT_FALSE(pair_of(detector, other));
+    EXPECT_FALSE(detector.outlines().pair_of(other));
   }
-  EXPECT_FALSE(pair_of(detector, {{FeatureKey::Owner::joint, 0, 0}, {FeatureKey::Owner::joint, 0, 0}}));
+  EXPECT_FALSE(
+      detector.outlines().pair_of({{FeatureKey::Owner::joint, 0, 0}, {FeatureKey::Owner::joint, 0, 0}}));
 }
 
 }  // namespace

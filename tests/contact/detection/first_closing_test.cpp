@@ -69,7 +69,7 @@ public:
       bodies.push_back(c);
     }
     if (detector_.bodies_touch())
-      BodyPairs(model_.assembly, detector_.bodies().outlines()).append(bodies, out);
+      BodyPairs(model_.assembly, detector_.outlines().of_bodies()).append(bodies, out);
     return out;
   }
 
@@ -79,7 +79,7 @@ public:
     double first = never;
     for (const ContactPair& pair : pairs()) {
       std::optional<BodyPairBound> bound;
-      if (pair.has_outline()) bound = bound_of_pair(model_.assembly, detector_, pair);
+      if (pair.has_outline()) bound = bound_of_pair(detector_.outlines(), pair);
       if (bound && !bound->closes_alone()) continue;
       const PairGap gap{detector_, pair, bound ? &*bound : nullptr};
       std::array<GapLook, 2> ends{GapLook{0.0}, GapLook{end}};

@@ -1,4 +1,4 @@
-#include <carom/contact/detection/body_contacts.h>
+#include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/touching_kinds.h>
 
 #include "tests/contact/detection/placed_model.h"
@@ -42,10 +42,10 @@ void expect_kinds(const System& system, bool any, bool all) {
   const TouchingKinds found = kinds_of(system);
   EXPECT_EQ(found.any, any);
   EXPECT_EQ(found.all, all);
-  EXPECT_EQ(BodyContacts(carom_test::PlacedModel(system).assembly).empty(), !any);
+  EXPECT_EQ(Outlines(carom_test::PlacedModel(system).assembly).bodies_touch(), any);
 }
 
-TEST(TouchingKinds, OneBodyTouchesNoOther) {
+TEST(TouchingKinds, OneTouchesNoOther) {
   System system = with_law();
   const BodyId body = add_disc(system, {});
   system.add(Disc{.body = body, .radius = 0.1, .centre = {0.3, 0.0}});

@@ -52,7 +52,7 @@ double deepest(const Simulation& simulation) {
   BodyContactSearch search;
   const ContactQuery query{state, evaluation, places};
   detector.find({0, static_cast<Index>(assembly.components().size())}, query, contacts);
-  if (detector.bodies_touch()) detector.bodies().find(query, search, contacts);
+  if (detector.bodies_touch()) detector.find_between_bodies(query, search, contacts);
   double depth = 0.0;
   for (const Constraint& contact : contacts) depth = std::min(depth, contact.gap);
   return depth;

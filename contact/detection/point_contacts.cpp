@@ -1,4 +1,4 @@
-#include <carom/contact/detection/ground_contacts.h>
+#include <carom/contact/detection/point_contacts.h>
 #include <carom/contact/detection/points_in_order.h>
 
 #include <algorithm>
@@ -32,18 +32,18 @@ void for_parts(Range all, Index size, F&& f) {
 
 }  // namespace
 
-GroundContacts::GroundContacts(const Assembly& assembly)
+PointContacts::PointContacts(const Assembly& assembly)
     : assembly_(&assembly),
       shapes_(assembly.system()),
       features_(shapes_.empty() ? BodyFeatures() : BodyFeatures(assembly)),
       laws_(assembly, features_, shapes_),
       needs_rotations_(features_.any_off_centre()) {}
 
-void GroundContacts::find(Range components, const ContactQuery& query, ConstraintSet& out) const {
+void PointContacts::find(Range components, const ContactQuery& query, ConstraintSet& out) const {
   in_dimension(*assembly_, [&](auto d) { find_in<d()>(components, query, out); });
 }
 
-void GroundContacts::find_of(Index body, const ContactQuery& query, ConstraintSet& out) const {
+void PointContacts::find_of(Index body, const ContactQuery& query, ConstraintSet& out) const {
   const Index component = assembly_->component_of(body);
   const BodySlot slot = assembly_->layout()->bodies()[body];
   const auto add_point = [&](const BodyFeature& point) {
@@ -62,12 +62,12 @@ void GroundContacts::find_of(Index body, const ContactQuery& query, ConstraintSe
   }
 }
 
-Index GroundContacts::material_of(const CentreRun& centres) const {
+Index PointContacts::material_of(const CentreRun& centres) const {
   return centres.points == none ? centres.material : features_.points()[centres.points].material;
 }
 
-bool GroundContacts::find_near(Range bodies, const CentreRun& centres, const ContactQuery& query,
-                               ShapesOfEach& near) const {
+bool PointContacts::find_near(Range bodies, const CentreRun& centres, const ContactQuery& query,
+                              ShapesOfEach& near) const {
   const LastingContacts* const lasting = query.lasting;
   const bool bare = centres.points == none;
   if (lasting != nullptr &&
@@ -103,7 +103,7 @@ bool GroundContacts::find_near(Range bodies, const CentreRun& centres, const Con
 
 /// Calls f(run) for the centres of some components.
 template <class F>
-void GroundContacts::for_runs(Range components, F&& f) const {
+void PointContacts::for_runs(Range components, F&& f) const {
   const Range all = assembly_->bodies_of(components), own = features_.of(components).centres;
   for (Index i = own.begin; i < own.end; ++i) {
     CentreRun run = features_.centres()[i];
@@ -114,7 +114,7 @@ void GroundContacts::for_runs(Range components, F&& f) const {
   }
 }
 
-bool GroundContacts::any_near(Range components, const ContactQuery& query) const {
+bool PointContacts::any_near(Range components, const ContactQuery& query) const {
   Index others = features_.of(components).points.size();  // beside centres
   bool any = false;
   for_runs(components, [&](const CentreRun& run) {
@@ -128,7 +128,7 @@ bool GroundContacts::any_near(Range components, const ContactQuery& query) const
 }
 
 /// True if no body of some runs touches at its bare centre.
-bool GroundContacts::only_points(Range runs) const {
+bool PointContacts::only_points(Range runs) const {
   for (Index i = runs.begin; i < runs.end; ++i) {
     if (features_.centres()[i].points == none) return false;
   }
@@ -136,7 +136,7 @@ bool GroundContacts::only_points(Range runs) const {
 }
 
 template <int D>
-void GroundContacts::find_in(Range components, const ContactQuery& query, ConstraintSet& out) const {
+void PointContacts::find_in(Range components, const ContactQuery& query, ConstraintSet& out) const {
   const BodyFeatures::OfComponents own = features_.of(components);
   if (own.points.size() > hardly_any || !only_points(own.centres)) {
     return find_among<D>(components, query, out);
@@ -149,7 +149,7 @@ void GroundContacts::find_in(Range components, const ContactQuery& query, Constr
 
 /// Many centres are looked at together.
 template <int D>
-void GroundContacts::find_among(Range components, const ContactQuery& query, ConstraintSet& out) const {
+void PointContacts::find_among(Range components, const ContactQuery& query, ConstraintSet& out) const {
   const BodySlots& bodies = assembly_->layout()->bodies();
   const std::vector<BodyFeature>& points = features_.points();
   PointsInOrder rest(points, features_.of(components).points);
@@ -182,8 +182,8 @@ void GroundContacts::find_among(Range components, const ContactQuery& query, Con
 }
 
 template <int D>
-void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes,
-                         const ContactQuery& query, ConstraintSet& out) const {
+void PointContacts::add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes,
+                        const ContactQuery& query, ConstraintSet& out) const {
   const PlacedFeature<D> at = place_feature<D>(body, feature, query.state, query.evaluation);
   const std::span<const Index> touched = laws_.touched_by(feature.material);
   for (std::size_t place = 0; place < touched.size(); ++place) {
@@ -213,8 +213,8 @@ void GroundContacts::add(const BodySlot& body, const BodyFeature& feature, Shape
 }
 
 template <int D>
-void GroundContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
-                          const GroundMotion* motion, const GroundAtEnd& end, Constraint& out) const {
+void PointContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
+                         const GroundMotion* motion, const GroundAtEnd& end, Constraint& out) const {
   if (at.centre.allFinite()) shapes_.demand_numbers(shape, gap, at.centre.data(), state.time);
   out.key = {at.feature.key, shapes_.key(shape)};
   out.law = laws_.law(at.feature.material, shape);
@@ -235,8 +235,8 @@ void GroundContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& ga
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));
 }
 
-void GroundContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
-                             const GroundMotion* motion, Constraint& out) const {
+void PointContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
+                            const GroundMotion* motion, Constraint& out) const {
   const BodySlot body = assembly_->layout()->bodies()[pair.body];
   const BodyFeature feature = pair.feature == none ? BodyFeature::at_centre(body, pair.body, pair.material)
                                                    : features_.points()[pair.feature];
@@ -248,7 +248,7 @@ void GroundContacts::contact(const ContactPair& pair, const StateView& state, co
   });
 }
 
-std::size_t GroundContacts::count_pairs(Range components) const {
+std::size_t PointContacts::count_pairs(Range components) const {
   std::size_t pairs = 0;
   const auto add = [&](Index points, Index material) { pairs += points * laws_.touched_by(material).size(); };
   for_runs(components, [&](const CentreRun& centres) {
@@ -259,7 +259,7 @@ std::size_t GroundContacts::count_pairs(Range components) const {
   return pairs;
 }
 
-void GroundContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {
+void PointContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {
   const auto append = [&](Index body, Index feature, Index material) {
     for (const Index shape : laws_.touched_by(material)) {
       out.push_back({body, feature, material, shape, none});

@@ -1,5 +1,5 @@
 #include "tests/constraint_sets.h"
-#include <carom/contact/detection/ground_contacts.h>
+#include <carom/contact/detection/point_contacts.h>
 
 #include "tests/contact/detection/placed_model.h"
 #include "tests/random.h"
@@ -46,14 +46,14 @@ System random_bodies(carom_test::Random& random, int bodies, Joined joined) {
 }
 
 // The search by parts finds what a look at each pair finds, in the same order and to the bit.
-TEST(GroundContacts, FindAllPairsThatTouch) {
+TEST(PointContacts, FindAllPairsThatTouch) {
   carom_test::Random random(4201);
   for (int repeat = 0; repeat < 20; ++repeat) {
     const Joined joined = repeat % 2 == 0 ? Joined::to_a_chain : Joined::not_at_all;
     const carom_test::PlacedModel model(random_bodies(random, 90, joined));
     const auto components = static_cast<Index>(model.assembly.components().size());
     ASSERT_EQ(components, joined == Joined::to_a_chain ? 1U : 90U);
-    const GroundContacts contacts(model.assembly);
+    const PointContacts contacts(model.assembly);
     EXPECT_TRUE(contacts.needs_rotations());
     std::vector<ContactPair> pairs;
     for (Index component = 0; component < components; ++component) contacts.append_pairs(component, pairs);
@@ -79,13 +79,13 @@ TEST(GroundContacts, FindAllPairsThatTouch) {
 }
 
 // Of many bodies those shapes are looked at that are near some of them; of one body each.
-TEST(GroundContacts, FindThoseThatLastAmongManyAsOneByOne) {
+TEST(PointContacts, FindThoseThatLastAmongManyAsOneByOne) {
   carom_test::Random random(4203);
   std::size_t opened = 0;
   for (int repeat = 0; repeat < 20; ++repeat) {
     carom_test::PlacedModel model(random_bodies(random, 90, Joined::not_at_all));
     for (double& v : model.state.v) v = random.uniform(-5.0, 5.0);
-    const GroundContacts contacts(model.assembly);
+    const PointContacts contacts(model.assembly);
     const auto components = static_cast<Index>(model.assembly.components().size());
     std::vector<ContactPair> pairs;
     for (Index component = 0; component < components; ++component) contacts.append_pairs(component, pairs);
@@ -117,13 +117,13 @@ TEST(GroundContacts, FindThoseThatLastAmongManyAsOneByOne) {
 }
 
 // A list that is kept holds contacts of other bodies, with other rows, before.
-TEST(GroundContacts, FindIntoASetThatHeldOthersWhatTheyFindAnew) {
+TEST(PointContacts, FindIntoASetThatHeldOthersWhatTheyFindAnew) {
   carom_test::Random random(4205);
   ConstraintSet kept;
   int nothing_near = 0, several = 0;
   for (int repeat = 0; repeat < 20; ++repeat) {
     const carom_test::PlacedModel model(random_bodies(random, 90, Joined::not_at_all));
-    const GroundContacts contacts(model.assembly);
+    const PointContacts contacts(model.assembly);
     const GroundPlaces places;
     for (const double margin : {-0.9, 0.0, infinity}) {
       const ContactQuery query{model.state.view(), model.evaluation, places, nullptr, margin, nullptr};
@@ -157,11 +157,11 @@ TEST(GroundContacts, FindIntoASetThatHeldOthersWhatTheyFindAnew) {
   EXPECT_GT(several, 100);
 }
 
-TEST(GroundContacts, WithoutGroundNothingTouches) {
+TEST(PointContacts, WithoutGroundNothingTouches) {
   System system;
   system.add(Particle{.mass = 1.0});
   const carom_test::PlacedModel model(system);
-  const GroundContacts contacts(model.assembly);
+  const PointContacts contacts(model.assembly);
   EXPECT_TRUE(contacts.shapes().empty());
   EXPECT_FALSE(contacts.needs_rotations());
   EXPECT_FALSE(contacts.law_facts().static_friction);
@@ -170,14 +170,14 @@ TEST(GroundContacts, WithoutGroundNothingTouches) {
   EXPECT_TRUE(pairs.empty());
 }
 
-TEST(GroundContacts, FrictionActsAtTheSpeedOfSliding) {
+TEST(PointContacts, FrictionActsAtTheSpeedOfSliding) {
   System system;
   const Surface curve{
       .friction = 0.2, .normal_restitution = 0.0, .static_friction = 0.6, .stribeck_speed = 0.5};
   system.add(HalfPlane{.normal = {0, 1}}, curve);
   system.add(Particle{.mass = 1.0, .velocity = {0.3, 0.0}});
   const carom_test::PlacedModel model(system);
-  const GroundContacts contacts(model.assembly);
+  const PointContacts contacts(model.assembly);
   EXPECT_TRUE(contacts.law_facts().static_friction);
   const GroundPlaces places;
   ConstraintSet found;
@@ -187,12 +187,12 @@ TEST(GroundContacts, FrictionActsAtTheSpeedOfSliding) {
 }
 
 // In space: three rows, the tangents in the plane.
-TEST(GroundContacts, InSpaceRowsAreAFrame) {
+TEST(PointContacts, InSpaceRowsAreAFrame) {
   System system;
   system.add(spatial::HalfSpace{.normal = {0.0, 0.6, 0.8}}, law);
   system.add(spatial::Particle{.mass = 1.0, .position = {1.0, 2.0, 3.0}});
   const carom_test::PlacedModel model(system);
-  const GroundContacts contacts(model.assembly);
+  const PointContacts contacts(model.assembly);
   const GroundPlaces places;
   ConstraintSet found;
   contacts.find({0, 1}, {model.state.view(), model.evaluation, places, nullptr, infinity, nullptr}, found);

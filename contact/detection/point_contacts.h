@@ -9,7 +9,6 @@
 #include <carom/contact/detection/contact_rows.h>
 #include <carom/contact/detection/ground_laws.h>
 #include <carom/contact/detection/ground_shapes.h>
-
 #include <carom/core/assembly.h>
 #include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
@@ -32,10 +31,10 @@ struct CentreRow {
 };
 
 /// Features of the bodies of an assembly, shapes on ground, and the laws between them.
-class CAROM_API GroundContacts {
+class CAROM_API PointContacts {
 public:
   /// Throws ModelError where a feature and a shape have no contact law. \param assembly outlives it
-  explicit GroundContacts(const Assembly& assembly);
+  explicit PointContacts(const Assembly& assembly);
 
   /// The shapes on ground.
   [[nodiscard]] const GroundShapes& shapes() const { return shapes_; }
