@@ -38,7 +38,6 @@ bool Delassus::build_of_one_contact(std::span<const ImpulseDirection> directions
   const BodyMasses masses = response.alone(at.body());
   if (masses.mass == nullptr || masses.layout != BodyMasses::Layout::planar_bodies) return false;
   directions_ = directions;
-  factored_ = false;
   loads_.clear();
   velocities_of_one_ = static_cast<int>(one_body::of_planar_body);
   common_ = {at.blocks[0].v, at.blocks[0].v + static_cast<Index>(one_body::of_planar_body)};
@@ -49,7 +48,6 @@ bool Delassus::build_of_one_contact(std::span<const ImpulseDirection> directions
 
 void Delassus::build(std::span<const ImpulseDirection> directions, BodyResponse& response) {
   directions_ = directions;
-  factored_ = false;
   loads_.clear();
   const std::size_t n = size();
   velocities_of_one_ = build_of_one_body(response);
@@ -268,7 +266,6 @@ void Delassus::write(double* matrix) const {
 }
 
 void Delassus::add_response(std::span<const double> impulses, double* x, double scale) const {
-  if (factored_) return add_factored_response(impulses, x, scale);
   if (velocities_of_one_ == 3)
     return one_body::add_alone<3>(responses_.data(), impulses.first(size()), scale, x + common_.begin);
   if (velocities_of_one_ == 2)

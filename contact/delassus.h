@@ -27,8 +27,8 @@ struct ImpulseDirection {
 };
 
 /// W with the responses that it is made of, row by row: dense where all columns reach the same bodies (one
-/// body, or those that joints or a linearised step bind), else each over the bodies that it reaches; or left
-/// as its factors, for solvers that need no W. Keeps its memory.
+/// body, or those that joints or a linearised step bind), else each over the bodies that it reaches. Keeps
+/// its memory.
 class CAROM_API Delassus {
 public:
   /// Takes the responses of the bodies to unit impulses along the columns. \param directions must outlive it
@@ -39,24 +39,6 @@ public:
   /// \param matrix out: W, as write_symmetric() gives it
   [[nodiscard]] bool build_of_one_contact(std::span<const ImpulseDirection> directions,
                                           const BodyResponse& response, double* matrix);
-
-  /// A body as a slot of factors.
-  struct Slot {
-    Constraint::Block block;               ///< its velocities
-    std::array<double, 3> inverse_mass{};  ///< by column [1/kg, 1/kg, 1/(kg m^2)]
-  };
-
-  /// Leaves W as its factors H and M^-1, where all bodies are those of the plane and answer for themselves;
-  /// else false, and nothing is made. Slots are bodies in the order in which the constraints name them. Call
-  /// group() afterwards. Without ratios and levers only. \param directions must outlive it \param some rows,
-  /// of whole constraints: all of them at once, or some after the others, up to the first for which it is
-  /// false \param problem in factors, of as many rows
-  [[nodiscard]] bool build_factors(std::span<const ImpulseDirection> directions, Range some,
-                                   BodyResponse& response, ContactProblem& problem);
-  /// Slots of the factors; none where W is made in full.
-  [[nodiscard]] std::span<const Slot> slots() const {
-    return factored_ ? std::span<const Slot>(slots_) : std::span<const Slot>();
-  }
 
   /// Number of rows.
   [[nodiscard]] std::size_t size() const { return directions_.size(); }
@@ -89,9 +71,6 @@ private:
     std::size_t column = 0;
     std::size_t before = no_part;  // of an earlier column that reaches there
   };
-  [[nodiscard]] int slot_of(const Constraint& constraint, std::size_t body, const BodyResponse& response);
-  [[nodiscard]] int add_slot(const Constraint::Block& block, const BodyResponse& response);
-  void add_factored_response(std::span<const double> impulses, double* x, double scale) const;
   [[nodiscard]] int build_of_one_body(const BodyResponse& response);
   [[nodiscard]] bool find_common_reach(BodyResponse& response);
   void lay_out(BodyResponse& response);
@@ -114,10 +93,6 @@ private:
   std::vector<double> responses_;
   std::vector<double> loads_;  // columns as they act, by the same places; empty where they act as they are
   std::vector<char> held_;     // by column
-  bool factored_ = false;
-  std::vector<Slot> slots_;
-  std::vector<int> slot_of_body_;  // of factors, by body; -1 elsewhere
-  std::vector<std::array<int, 3>> slots_of_constraint_;
 };
 
 }  // namespace carom

@@ -39,7 +39,7 @@ void set_free_velocity_of_rows(std::span<const Constraint> constraints, const do
 }
 
 void set_free_velocity_of_slots(std::span<const ImpulseDirection> directions,
-                                std::span<const Delassus::Slot> slots, const double* velocity_free,
+                                std::span<const FactorMaker::Slot> slots, const double* velocity_free,
                                 std::span<const double> given, std::vector<double>& scratch,
                                 ContactProblem& problem) {
   constexpr std::size_t columns = ResponseFactors::columns;

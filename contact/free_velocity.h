@@ -6,6 +6,7 @@
 
 #include <carom/contact/contact_velocity.h>
 #include <carom/contact/delassus.h>
+#include <carom/contact/factor_maker.h>
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/core/constraint.h>
 
@@ -52,7 +53,7 @@ void set_free_velocity_of_rows(std::span<const Constraint> constraints, const do
 /// b of a problem in factors. \param given part of it without velocities of bodies at the end
 /// \param scratch velocities of slots
 void set_free_velocity_of_slots(std::span<const ImpulseDirection> directions,
-                                std::span<const Delassus::Slot> slots, const double* velocity_free,
+                                std::span<const FactorMaker::Slot> slots, const double* velocity_free,
                                 std::span<const double> given, std::vector<double>& scratch,
                                 ContactProblem& problem);
 

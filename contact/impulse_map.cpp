@@ -18,15 +18,15 @@ void ImpulseMap::add_loads(double scale, double* load) const {
 
 /// From the velocities that a unit impulse along each normal gives the bodies of its contact.
 double ImpulseMap::mass_ratio() const {
-  if (!delassus_->slots().empty()) return 1.0;
-  std::vector<double> unit(impulses_.size(), 0.0), velocity(delassus_->reach_end());
+  if (response_->factors.answer_alone()) return 1.0;
+  std::vector<double> unit(impulses_.size(), 0.0), velocity(response_->dense.reach_end());
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
     const Constraint& at = constraints_[c];
     if (at.has_dry_friction()) continue;
     std::fill(velocity.begin(), velocity.end(), 0.0);
     unit[place(c, 0)] = 1.0;
-    delassus_->add_response(unit, velocity.data());
+    response_->dense.add_response(unit, velocity.data());
     unit[place(c, 0)] = 0.0;
     for (std::size_t b = 0; b < static_cast<std::size_t>(at.bodies); ++b) {
       double own = 0.0;

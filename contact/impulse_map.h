@@ -5,7 +5,7 @@
 /// a row with the velocities gamma^- before and gamma^+ after does the work P (gamma^- + gamma^+)/2 (exact
 /// for the kinetic energy); that of all rows together is what the law of impact gains or takes.
 
-#include <carom/contact/delassus.h>
+#include <carom/contact/island_response.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
@@ -55,22 +55,24 @@ class CAROM_API ImpulseMap {
 public:
   /// \param first_row of each constraint \param before velocities gamma^- \param impulses P, both by row
   ImpulseMap(std::span<const Constraint> constraints, std::span<const int> first_row,
-             const Delassus& delassus, std::span<const double> before, std::span<const double> impulses)
+             const IslandResponse& response, std::span<const double> before, std::span<const double> impulses)
       : constraints_(constraints),
         first_row_(first_row),
-        delassus_(&delassus),
+        response_(&response),
         before_(before),
         impulses_(impulses) {}
 
   /// v += scale B H^T P. \param velocity of all bodies
   void add_velocities(double* velocity, double scale = 1.0) const {
-    delassus_->add_response(impulses_, velocity, scale);
+    response_->add(impulses_, velocity, scale);
   }
   /// Calls f(block) for each body; where W is left in factors once, else perhaps more often.
   template <class F>
   void for_bodies(F&& f) const {
-    for (const Delassus::Slot& slot : delassus_->slots()) f(slot.block);
-    if (!delassus_->slots().empty()) return;
+    if (response_->factors.answer_alone()) {
+      for (const FactorMaker::Slot& slot : response_->factors.slots()) f(slot.block);
+      return;
+    }
     Index last = none;
     for (const Constraint& constraint : constraints_) {
       for (std::size_t b = 0; b < static_cast<std::size_t>(constraint.bodies); ++b) {
@@ -100,7 +102,7 @@ private:
 
   std::span<const Constraint> constraints_;
   std::span<const int> first_row_;
-  const Delassus* delassus_;
+  const IslandResponse* response_;
   std::span<const double> before_, impulses_;
 };
 

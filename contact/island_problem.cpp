@@ -89,6 +89,7 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
   constraints_ = constraints;
   answer_.known = answer_.changed_modes = false;
   jam_.begin();
+  response_.factors.clear();
   answer_.response.clear();
   if (constraints.size() != 1 || constraints[0].rows != 2 || !problem_.is_one_planar_contact()) {
     return build_any(velocity_before, response, start);
@@ -105,9 +106,9 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
     answer_.impulse[row] = 0.0;
   }
   if (response == nullptr) return;
-  if (delassus_.build_of_one_contact(directions_, *response, problem_.matrix().data())) return;
-  delassus_.build(directions_, *response);
-  delassus_.write_symmetric(problem_.matrix().data());
+  if (response_.dense.build_of_one_contact(directions_, *response, problem_.matrix().data())) return;
+  response_.dense.build(directions_, *response);
+  response_.dense.write_symmetric(problem_.matrix().data());
 }
 
 void IslandProblem::build_any(const double* velocity_before, BodyResponse* response, SweepStart start) {
@@ -142,7 +143,7 @@ void IslandProblem::build_any(const double* velocity_before, BodyResponse* respo
     const Range some{static_cast<Index>(first), static_cast<Index>(last)};
     write_rows(some, velocity_before);
     const int row = first_row_[first], end = last < first_row_.size() ? first_row_[last] : rows;
-    if (!delassus_.build_factors(directions_, {static_cast<Index>(row), static_cast<Index>(end)}, *response,
+    if (!response_.factors.build(directions_, {static_cast<Index>(row), static_cast<Index>(end)}, *response,
                                  problem_)) {
       write_rows({some.end, static_cast<Index>(constraints.size())}, velocity_before);
       forget_impulses();
@@ -192,20 +193,20 @@ void IslandProblem::write_rows(Range some, const double* velocity_before) {
 void IslandProblem::respond(BodyResponse& response) {
   if (problem_.is_factored()) {
     const auto rows = static_cast<Index>(problem_.rows());
-    scratch_.bound.clear();
     problem_.factors().bound.clear();
-    if (delassus_.build_factors(directions_, {0, rows}, response, problem_)) return problem_.group();
+    if (response_.factors.build(directions_, {0, rows}, response, problem_)) return problem_.group();
     if (are_for_sweeps(constraints_) && answers_have_room(directions_, response)) {
-      delassus_.build(directions_, response);
-      if (scratch_.bound.write(directions_, delassus_, response, problem_)) return problem_.group();
+      response_.dense.build(directions_, response);
+      if (response_.factors.build_bound(directions_, response_.dense, response, problem_))
+        return problem_.group();
     }
     demand_room(constraints_.size(), problem_.rows());
     make_dense(scratch_.sets, problem_);
   }
   const bool one = constraints_.size() == 1 && directions_.size() == 2;
-  if (one && delassus_.build_of_one_contact(directions_, response, problem_.matrix().data())) return;
-  delassus_.build(directions_, response);
-  delassus_.write_symmetric(problem_.matrix().data());
+  if (one && response_.dense.build_of_one_contact(directions_, response, problem_.matrix().data())) return;
+  response_.dense.build(directions_, response);
+  response_.dense.write_symmetric(problem_.matrix().data());
 }
 
 void IslandProblem::update_bound(std::size_t constraint) {
@@ -237,7 +238,7 @@ void IslandProblem::add_velocities(double* velocity) {
   std::vector<double>& response = answer_.response;
   if (response.empty()) problem_.factors().respond(answer_.impulse, response);
   const double* change = response.data();
-  for (const Delassus::Slot& slot : delassus_.slots()) {
+  for (const FactorMaker::Slot& slot : response_.factors.slots()) {
     for (int c = 0; c < slot.block.columns; ++c) velocity[slot.block.v + static_cast<Index>(c)] += change[c];
     change += ResponseFactors::columns;
   }
@@ -245,9 +246,8 @@ void IslandProblem::add_velocities(double* velocity) {
 
 void IslandProblem::set_free_velocity(const double* velocity_free) {
   if (problem_.is_factored()) {
-    const bool bound = problem_.factors().any_bound();
-    return set_free_velocity_of_slots(directions_, bound ? scratch_.bound.slots() : delassus_.slots(),
-                                      velocity_free, scratch_.given, scratch_.slot_velocity, problem_);
+    return set_free_velocity_of_slots(directions_, response_.factors.slots(), velocity_free, scratch_.given,
+                                      scratch_.slot_velocity, problem_);
   }
   const RowsBefore before{before_, restitution_};
   if (set_free_velocity_of_contact(constraints_, velocity_free, before, problem_)) return;

@@ -7,9 +7,9 @@
 /// B the response of the bodies (contact/delassus.h); to b in normal direction Constraint::allowed_approach
 /// is added.
 
-#include <carom/contact/bound_factors.h>
 #include <carom/contact/delassus.h>
 #include <carom/contact/impulse_map.h>
+#include <carom/contact/island_response.h>
 #include <carom/contact/plastic_jams.h>
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/impact_solver.h>
@@ -110,7 +110,7 @@ public:
   void add_velocities(double* velocity);
   /// The way back of the last answer. Valid until the problem changes.
   [[nodiscard]] ImpulseMap map() const {
-    return {constraints_, first_row_, delassus_, before_, answer_.impulse};
+    return {constraints_, first_row_, response_, before_, answer_.impulse};
   }
 
 private:
@@ -127,14 +127,13 @@ private:
     std::vector<RowSet> sets;           // while W is made in full
     std::vector<double> slot_velocity;  // of bodies
     std::vector<double> given;          // part of b without velocities of bodies at the end
-    BoundFactors bound;                 // where bodies answer together
   };
 
   IslandOptions options_;
   PlasticJam jam_;
   std::span<const Constraint> constraints_;
   std::vector<ImpulseDirection> directions_;
-  Delassus delassus_;
+  IslandResponse response_;
   ContactProblem problem_;
   ContactSolution answer_;
   ImpactChoice impact_;

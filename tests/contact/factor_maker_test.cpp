@@ -4,7 +4,7 @@
 #include "tests/random.h"
 
 #include <carom/carom.h>
-#include <carom/contact/bound_factors.h>
+#include <carom/contact/factor_maker.h>
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/residual.h>
 #include <carom/core/assembly.h>
