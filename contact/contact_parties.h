@@ -1,8 +1,9 @@
 #pragma once
 
 /// \file
-/// Who takes part in a contact, as records of contacts and events name them.
+/// Who takes part in a contact and where it is, as records of contacts and events of both modes have it.
 
+#include <carom/contact/contact_point.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/ids.h>
@@ -19,6 +20,18 @@ void set_parties(const ConstraintHead& at, const Assembly& assembly, Record& out
   out.body = body;
   out.other = other;
   out.obstacle = of_ground ? ObstacleId{at.key.b.serial, layout.token()} : ObstacleId{};
+}
+
+/// Writes which contact a constraint is, of whom, and where it is. \param q coordinates of all bodies, where
+/// it was detected
+template <class Place>
+void write_place(const Constraint& at, const Assembly& assembly, const double* q, Place& out) {
+  set_parties(at, assembly, out);
+  out.key = at.key;
+  out.directions = at.rows;
+  out.gap = at.gap;
+  out.point = out.normal = {};
+  find_point_of_contact(at, q + assembly.layout()->bodies()[at.body()].q, out.point, out.normal);
 }
 
 }  // namespace carom

@@ -196,6 +196,18 @@ bool misses_throughout(FunctionRef<LawPoint(double)> law, FalseRate& found, doub
   }
 }
 
+/// Throws the SolverError of a law. \param message behind the name of the part
+[[noreturn]] void fail_law(const std::string& part, const std::string& message, double time) {
+  SolverFailure failure;
+  failure.time = time;
+  failure.parts.push_back(part);
+  throw RunError(part + ": " + message, std::move(failure));
+}
+
+std::string with_unit(double value, const char* unit) {
+  return *unit == '\0' ? to_text(value) : to_text(value) + " " + unit;
+}
+
 }  // namespace
 
 std::optional<FalseRate> find_false_rate(FunctionRef<LawPoint(double)> law, const LawPoint& from,
@@ -218,27 +230,36 @@ bool looks_smooth(const LawPoint& from, const LawPoint& to) {
   return place.smooth() && place.straight() && turn.smooth() && turn.straight();
 }
 
-void fail_jump(const std::string& part, const std::string& quantity, const char* unit, const LawJump& jump) {
-  SolverFailure failure;
-  failure.time = jump.time;
-  failure.parts.push_back(part);
-  std::string message =
-      part + ": " + quantity + " jumps at t = " + to_text(jump.time) + " s, by " + to_text(jump.size);
-  if (*unit != '\0') message.append(" ").append(unit);
-  message += "; allowed: a continuous one (its rate may jump, at times listed in breaks)";
-  throw RunError(message, std::move(failure));
+void PrescribedLaw::demand_continuous(const LawPoint& from, const LawPoint& to) const {
+  if (looks_smooth(from, to)) return;
+  if (const auto jump = find_jump(law_, from, to)) fail(*jump);
+  if (const auto rate = find_false_rate(law_, from, to)) fail(*rate);
 }
 
-void fail_rate(const std::string& part, const std::string& rate, const std::string& of, const char* unit,
-               const FalseRate& found) {
-  SolverFailure failure;
-  failure.time = found.time;
-  failure.parts.push_back(part);
-  std::string message = part + ": " + rate + " at t = " + to_text(found.time) + " s is not the rate of " +
-                        of + ", off by " + to_text(found.off);
-  if (*unit != '\0') message.append(" ").append(unit);
-  message += "; allowed: its rate (it is computed where none is given)";
-  throw RunError(message, std::move(failure));
+void PrescribedLaw::fail(const LawJump& jump) const {
+  fail_law(part_(),
+           std::string(jump.of_angle ? names_->angle : names_->place) +
+               " jumps at t = " + to_text(jump.time) + " s, by " +
+               with_unit(jump.size, jump.of_angle ? names_->unit_of_angle : names_->unit) +
+               "; allowed: a continuous one (its rate may jump, at times listed in breaks)",
+           jump.time);
+}
+
+void PrescribedLaw::fail(const FalseRate& found) const {
+  fail_law(part_(),
+           std::string(found.of_angle ? names_->spin : names_->velocity) + " at t = " + to_text(found.time) +
+               " s is not the rate of " + (found.of_angle ? names_->angle : names_->place) + ", off by " +
+               with_unit(found.off, found.of_angle ? names_->unit_of_spin : names_->unit_of_velocity) +
+               "; allowed: its rate (it is computed where none is given)",
+           found.time);
+}
+
+void fail_law_not_finite(const std::string& part, const std::string& quantity, double value, const char* unit,
+                         double time) {
+  fail_law(part,
+           quantity + " at t = " + to_text(time) + " s is " + with_unit(value, unit) +
+               "; allowed: a finite number",
+           time);
 }
 
 std::optional<LawJump> find_jump(FunctionRef<LawPoint(double time)> law, const LawPoint& from,

@@ -67,13 +67,37 @@ inline constexpr double resolved_share = 1e-9;
 [[nodiscard]] CAROM_API std::optional<FalseRate> find_false_rate(FunctionRef<LawPoint(double time)> law,
                                                                  const LawPoint& from, const LawPoint& to);
 
-/// Throws the SolverError of a false rate. \param part whose law it is \param rate its name, in `unit`
-/// \param of what it should be the rate of
-[[noreturn]] CAROM_API void fail_rate(const std::string& part, const std::string& rate, const std::string& of,
-                                      const char* unit, const FalseRate& found);
+/// A law of time of a user, as its part prescribes it: the only place where such laws are checked in a run. A
+/// view.
+class CAROM_API PrescribedLaw {
+public:
+  /// Quantities as errors name them, with their units; no unit of a coordinate.
+  struct Names {
+    const char *place = "position", *unit = "";                 ///< of the place
+    const char *velocity = "velocity", *unit_of_velocity = "";  ///< of its rate
+    const char *angle = "angle", *unit_of_angle = "rad";        ///< of the angle
+    const char *spin = "spin", *unit_of_spin = "rad/s";         ///< of its rate
+  };
 
-/// Throws the SolverError of a jump. \param part whose law it is \param quantity what jumps, in `unit`
-[[noreturn]] CAROM_API void fail_jump(const std::string& part, const std::string& quantity, const char* unit,
-                                      const LawJump& jump);
+  /// All must outlive it. \param law at a time [s] \param part name of the part, asked for errors
+  PrescribedLaw(FunctionRef<LawPoint(double time)> law, FunctionRef<std::string()> part, const Names& names)
+      : law_(law), part_(part), names_(&names) {}
+  /// Demands that the law is continuous between two of its points, and that rates which are given are its
+  /// own. Throws SolverError naming the part, the time, and by how much it jumps or the rate is off.
+  void demand_continuous(const LawPoint& from, const LawPoint& to) const;
+
+private:
+  [[noreturn]] void fail(const LawJump& jump) const;
+  [[noreturn]] void fail(const FalseRate& found) const;
+
+  FunctionRef<LawPoint(double time)> law_;
+  FunctionRef<std::string()> part_;
+  const Names* names_;
+};
+
+/// Throws the SolverError of a law that is not finite. \param part whose law it is \param quantity what is
+/// not finite, with its value in `unit` \param time [s]
+[[noreturn]] CAROM_API void fail_law_not_finite(const std::string& part, const std::string& quantity,
+                                                double value, const char* unit, double time);
 
 }  // namespace carom

@@ -1,4 +1,4 @@
-#include <carom/core/run_error.h>
+#include <carom/core/law_jump.h>
 #include <carom/core/system.h>
 #include <carom/core/time_course.h>
 #include <carom/joints/driver_kind.h>
@@ -39,15 +39,10 @@ void DriverKind::evaluate(const JointView& at, Index joint, JointRow* out) const
   const Course<double> now =
       course(driver.position, driver.velocity, driver.acceleration, at.state.time, driver.breaks);
   if (!(std::isfinite(now.value) && std::isfinite(now.rate) && std::isfinite(now.second))) {
-    SolverFailure failure;
-    failure.time = at.state.time;
-    failure.parts.push_back(parts_[joint].name);
-    const char* const what = !std::isfinite(now.value)  ? "position"
-                             : !std::isfinite(now.rate) ? "velocity"
-                                                        : "acceleration";
-    throw RunError(parts_[joint].name + ": " + what + " at t = " + to_text(at.state.time) +
-                       " s is not finite; allowed: a finite number",
-                   std::move(failure));
+    const auto [what, value] = !std::isfinite(now.value)  ? std::pair("position", now.value)
+                               : !std::isfinite(now.rate) ? std::pair("velocity", now.rate)
+                                                          : std::pair("acceleration", now.second);
+    fail_law_not_finite(parts_[joint].name, what, value, "", at.state.time);
   }
   out->gap -= now.value;
   out->rate -= now.rate;

@@ -43,13 +43,8 @@ GroundMotion GroundShapes::motion(Index shape, double time) const {
   const GroundMotion motion = shapes_[shape].kind->place(shapes_[shape].slot, time);
   const NonFiniteMotion bad = find_non_finite(motion);
   if (bad.quantity == nullptr) return motion;
-  SolverFailure failure;
-  failure.time = time;
-  failure.parts.push_back(system_->name(id(shape)));
-  const std::string message = failure.parts.front() + ": " + bad.quantity +
-                              " of its motion at t = " + to_text(time) + " s is " + to_text(bad.value) + " " +
-                              bad.unit + "; allowed: a finite number";
-  throw RunError(message, std::move(failure));
+  fail_law_not_finite(system_->name(id(shape)), std::string(bad.quantity) + " of its motion", bad.value,
+                      bad.unit, time);
 }
 
 void GroundShapes::refuse(Index shape, const Gap& gap, const double* point, double time) const {
@@ -86,21 +81,15 @@ void GroundShapes::demand_continuous(const GroundPlaces& before, const GroundPla
     return LawPoint{time,        motion.point,          motion.velocity,  motion.angle,
                     motion.spin, motion.velocity_given, motion.spin_given};
   };
+  constexpr PrescribedLaw::Names names{.place = "displacement", .unit = "m", .unit_of_velocity = "m/s"};
   for (Index shape = 0; shape < size(); ++shape) {
     if (!moves(shape)) continue;
     const Shape& at = shapes_[shape];
     const LawPoint from = point_of(before.motions_[at.moving], before.time_),
                    to = point_of(after.motions_[at.moving], after.time_);
-    if (looks_smooth(from, to)) continue;
     auto law = [&](double time) { return point_of(at.kind->place(at.slot, time), time); };
-    if (const auto jump = find_jump(law, from, to)) {
-      fail_jump(system_->name(id(shape)), jump->of_angle ? "angle" : "displacement",
-                jump->of_angle ? "rad" : "m", *jump);
-    }
-    if (const auto rate = find_false_rate(law, from, to)) {
-      fail_rate(system_->name(id(shape)), rate->of_angle ? "spin" : "velocity",
-                rate->of_angle ? "angle" : "displacement", rate->of_angle ? "rad/s" : "m/s", *rate);
-    }
+    auto name = [&] { return system_->name(id(shape)); };
+    PrescribedLaw(law, name, names).demand_continuous(from, to);
   }
 }
 

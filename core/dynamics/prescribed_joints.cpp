@@ -18,19 +18,13 @@ PrescribedJoints::PrescribedJoints(const Assembly& assembly) : assembly_(&assemb
 }
 
 void PrescribedJoints::demand_continuous(double from, double to) {
+  constexpr PrescribedLaw::Names names{};  // of a coordinate
   for (Law& law : laws_) {
     auto at = [&](double time) { return law.kind->prescribed(law.slot, time); };
     if (law.last.time != from) law.last = at(from);
+    auto name = [&] { return assembly_->system().name(law.id); };
     const LawPoint end = at(to);
-    if (!looks_smooth(law.last, end)) {
-      const System& system = assembly_->system();
-      if (const auto jump = find_jump(at, law.last, end)) {
-        fail_jump(system.name(law.id), "position", "", *jump);
-      }
-      if (const auto rate = find_false_rate(at, law.last, end)) {
-        fail_rate(system.name(law.id), "velocity", "position", "", *rate);
-      }
-    }
+    PrescribedLaw(at, name, names).demand_continuous(law.last, end);
     law.last = end;
   }
 }

@@ -1,7 +1,6 @@
 // Problem: a clock group from event to event, with output in between.
 
 #include <carom/contact/contact_parties.h>
-#include <carom/contact/contact_point.h>
 #include <carom/integrators/event_driven/clock_group.h>
 #include <carom/integrators/event_driven/group_stages.h>
 #include <carom/integrators/event_driven/overlap_check.h>
@@ -196,11 +195,7 @@ void ClockGroup::list_forces(std::vector<LastingContact>& out) {
     } else if (contact.at.type == ConstraintType::contact) {
       LastingContact& force = out.emplace_back();
       const Constraint& closed = contact.at;
-      force.key = closed.key;
-      set_parties(closed, assembly, force);
-      find_point_of_contact(closed, at.state.q.data() + assembly.layout()->bodies()[closed.body()].q,
-                            force.point, force.normal);
-      force.gap = closed.gap;
+      write_place(closed, assembly, at.state.q.data(), force);
       force.velocity = {closed.normal_velocity(at.state.v.data()),
                         closed.tangential_velocity(at.state.v.data())};
       force.force = {contact.normal, contact.tangential};

@@ -1,7 +1,6 @@
 // Problem: tell the ledger and the report what the impulses of contacts, limits and friction in joints did.
 
 #include <carom/contact/contact_parties.h>
-#include <carom/contact/contact_point.h>
 #include <carom/contact/contact_velocity.h>
 #include <carom/contact/fetch_contact.h>
 #include <carom/integrators/time_stepping/mode_after.h>
@@ -63,7 +62,7 @@ public:
     ContactRecord& entry = result_.next_record();
     entry.mode = answer.mode;
     entry.impact = impact;
-    write_place(at, entry);
+    write_place(at, assembly_, in_.start.q.data(), entry);
     write_answer(answer, entry);
     book_rows(at, {before, jump.data()}, answer.impulses, work.sum, entry);
     const bool is_last = !(common_.time < in_.end_time);  // else an impact, or contact up to it
@@ -72,17 +71,6 @@ public:
   }
 
 private:
-  /// Which contact it is, and where.
-  void write_place(const Constraint& at, ContactRecord& entry) const {
-    const BodySlot body = assembly_.layout()->bodies()[at.body()];
-    set_parties(at, assembly_, entry);
-    entry.key = at.key;
-    entry.directions = at.rows;
-    entry.gap = at.gap;
-    entry.point = entry.normal = {};
-    find_point_of_contact(at, in_.start.q.data() + body.q, entry.point, entry.normal);
-  }
-
   /// A limit is told in the unit of its coordinate.
   static void tell_in_coordinate(const Constraint& at, ContactRecord& entry) {
     entry.gap /= at.of_joint.length;
