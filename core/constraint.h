@@ -193,11 +193,13 @@ public:
     return *this;
   }
 
-  /// Gives it rows of the bodies that it has; their numbers are to be written, all of them.
-  /// \param count 1 to max_rows
+  /// Gives it rows of the bodies that it has; their numbers are to be written, all of them. Behind a single
+  /// row stands one of zeros: a limit has no velocity along a tangent. \param count 1 to max_rows
   void start_rows(int count) {
     rows = count;
-    if (const auto needed = static_cast<std::size_t>(count * columns()); needed > room_.size) grow(needed);
+    const int width = columns(), placed = std::max(count, 2);
+    if (const auto needed = static_cast<std::size_t>(placed * width); needed > room_.size) grow(needed);
+    if (count < placed) std::fill_n(room_.first + width, width, 0.0);
   }
   /// Takes everything but its place from a constraint of any set.
   void take(const Constraint& other) {

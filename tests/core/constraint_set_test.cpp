@@ -130,6 +130,44 @@ TEST(ConstraintSet, OneToBeAContactIsAsMadeByDefaultButForWhatContactsWrite) {
   }
 }
 
+// A limit has one row, and neither velocity nor force along a tangent, wherever it stands.
+TEST(ConstraintSet, ALimitHasNothingAlongATangent) {
+  constexpr std::size_t velocities = 2000;
+  const std::vector<double> v(velocities, 1.0);
+  std::vector<double> load(velocities);
+  const auto expect_nothing = [&](Constraint& limit) {
+    limit.type = ConstraintType::limit;
+    EXPECT_EQ(limit.tangential_velocity(v.data()), 0.0);
+    EXPECT_EQ(limit.tangential_acceleration(v.data()), 0.0);
+    EXPECT_EQ(limit.sliding_speed(v.data()), 0.0);
+    EXPECT_EQ(limit.speed(limit.tangent_row(), v.data()), 0.0);
+    for (int c = 0; c < limit.columns(); ++c) EXPECT_EQ(limit.row(1)[c], 0.0);
+    std::fill(load.begin(), load.end(), 0.0);
+    limit.add_force(2.0, 3.0, load.data());
+    std::vector<double> expected(velocities, 0.0);
+    limit.add_transposed(0, 2.0, expected.data());
+    EXPECT_EQ(load, expected);
+  };
+  ConstraintSet set;
+  for (int round = 0; round < 3; ++round) {
+    set.clear();
+    for (Index i = 0; i < 16; ++i) {
+      const std::vector<int>& bodies =
+          kinds_of_bodies[(i + static_cast<Index>(round)) % kinds_of_bodies.size()];
+      const bool is_limit = (i + static_cast<Index>(round)) % 2 == 0;
+      write(i + 1, is_limit ? 1 : 3, bodies, set.add());
+      if (is_limit) set[i].type = ConstraintType::limit;
+    }
+    for (Constraint& at : set) {
+      if (at.type != ConstraintType::limit) continue;
+      expect_nothing(at);
+      SingleConstraint alone(at);
+      expect_nothing(alone);
+    }
+    EXPECT_TRUE(std::all_of(set.begin(), set.end(), is_whole)) << "no row is written over another one";
+  }
+}
+
 // Whatever is done to a list, each constraint has the rows that were written with it.
 TEST(ConstraintSet, RowsGoWithTheirConstraintsThroughAllChanges) {
   Random random(52);
