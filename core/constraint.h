@@ -272,15 +272,16 @@ public:
   }
 
 protected:
-  // Where the numbers of its rows stand.
+  /// Where the numbers of its rows stand.
   struct Room {
-    double* first = nullptr;
-    std::size_t size = 0;
-    RowStore* store = nullptr;  // of its set; null of a single constraint
+    double* first = nullptr;    ///< the first of them
+    std::size_t size = 0;       ///< so many have room
+    RowStore* store = nullptr;  ///< of its set; null of a single constraint
   };
+  /// A constraint without room for rows.
   Constraint() = default;
 
-  Room room_;
+  Room room_;  ///< of its rows
 
 private:
   /// Calls f(number of row i, its place among all velocities).

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace carom {
@@ -37,8 +38,16 @@ public:
     if (this != &other) assign(other);
     return *this;
   }
-  ConstraintSet(ConstraintSet&&) noexcept = default;
-  ConstraintSet& operator=(ConstraintSet&&) noexcept = default;
+  ConstraintSet(ConstraintSet&& other) noexcept
+      : rows_(std::move(other.rows_)),
+        list_(std::move(other.list_)),
+        count_(std::exchange(other.count_, 0)) {}
+  ConstraintSet& operator=(ConstraintSet&& other) noexcept {
+    rows_.swap(other.rows_);
+    list_.swap(other.list_);
+    std::swap(count_, other.count_);
+    return *this;
+  }
 
   /// Number of constraints.
   [[nodiscard]] std::size_t size() const { return count_; }

@@ -45,8 +45,7 @@ public:
   /// All must outlive it.
   MeetingSearch(const Assembly& assembly, const Detector& detector, GroupSet& groups,
                 const BodyFlights& flights, const EventDriven& options)
-      : assembly_(&assembly),
-        detector_(&detector),
+      : detector_(&detector),
         groups_(&groups),
         flights_(&flights),
         options_(&options),
@@ -74,7 +73,6 @@ private:
   [[nodiscard]] double least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time);
   [[nodiscard]] double noise(const Bodies& bodies, const BodyPairBound& bound) const;
 
-  const Assembly* assembly_;
   const Detector* detector_;
   GroupSet* groups_;
   const BodyFlights* flights_;

@@ -8,6 +8,7 @@
 #include <carom/contact/active_set.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

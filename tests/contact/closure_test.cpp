@@ -3,6 +3,7 @@
 #include <carom/carom.h>
 #include <carom/contact/closure.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <carom/contact/contact_velocity.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 #include <carom/carom.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

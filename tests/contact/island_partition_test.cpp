@@ -2,6 +2,7 @@
 
 #include "tests/constraint_sets.h"
 #include <carom/contact/island_partition.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <carom/contact/island_problem.h>
 #include <carom/contact/lone_contacts.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 
 #include "tests/random.h"
 

@@ -2,6 +2,7 @@
 
 #include <carom/carom.h>
 #include <carom/contact/separation.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include "tests/contact/touching_body.h"
 
 #include <carom/contact/strike.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

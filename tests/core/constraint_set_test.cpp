@@ -87,6 +87,12 @@ TEST(ConstraintSet, ACopyHasRowsOfItsOwn) {
   EXPECT_TRUE(is_whole(alone));
   copy[2].row(1)[1] = -1.0;
   EXPECT_TRUE(is_whole(set[2]));
+  ConstraintSet taken = std::move(copy);
+  EXPECT_TRUE(copy.empty());  // NOLINT(bugprone-use-after-move): it can be used again
+  write(9, 2, {3}, copy.add());
+  EXPECT_TRUE(is_whole(copy[0]));
+  EXPECT_EQ(taken.size(), 5U);
+  EXPECT_TRUE(is_whole(taken[3]));
   SingleConstraint moved = std::move(alone);  // its room is within it
   alone.row(0)[0] = -1.0;
   EXPECT_TRUE(is_whole(moved));

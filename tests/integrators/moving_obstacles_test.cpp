@@ -10,6 +10,7 @@
 #include <carom/carom.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/testing/refinement.h>
 
 #include <gtest/gtest.h>

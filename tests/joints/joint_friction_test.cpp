@@ -1,4 +1,5 @@
 #include <carom/contact/detection/detector.h>
+#include <carom/core/constraint_set.h>
 #include <carom/joints/joint_friction.h>
 
 #include <carom/joints/driver.h>

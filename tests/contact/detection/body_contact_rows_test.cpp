@@ -9,6 +9,7 @@
 #include <carom/contact/contact_velocity.h>
 #include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/detector.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

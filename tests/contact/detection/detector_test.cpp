@@ -4,6 +4,7 @@
 #include "tests/contact/detection/placed_model.h"
 
 #include <carom/carom.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

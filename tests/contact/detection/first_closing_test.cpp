@@ -5,6 +5,7 @@
 #include <carom/carom.h>
 #include <carom/contact/detection/body_pairs.h>
 #include <carom/contact/detection/first_closing.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

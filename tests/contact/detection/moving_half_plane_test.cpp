@@ -7,6 +7,7 @@
 #include <carom/carom.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/core/discontinuity.h>
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 
 #include <carom/contact/detection/gap_convex.h>
 #include <carom/contact/detection/pair_rows.h>
+#include <carom/core/constraint_set.h>
 
 #include "tests/contact/detection/convex_reference.h"
 

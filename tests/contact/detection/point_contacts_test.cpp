@@ -5,6 +5,7 @@
 #include "tests/random.h"
 
 #include <carom/carom.h>
+#include <carom/core/constraint_set.h>
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/integrators/event_driven/event_balance.h>
 
 #include <gtest/gtest.h>

@@ -8,6 +8,7 @@
 #include <carom/contact/detection/body_pairs.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/integrators/event_driven/motion_memory.h>
 #include <carom/integrators/event_driven/smooth_motion.h>
 

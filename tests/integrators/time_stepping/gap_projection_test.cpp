@@ -5,6 +5,7 @@
 #include <carom/carom.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/integrators/run/companion.h>
 
 #include <gtest/gtest.h>

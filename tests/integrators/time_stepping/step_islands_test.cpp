@@ -3,6 +3,7 @@
 #include "tests/constraint_sets.h"
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
 #include <carom/integrators/time_stepping/island_iteration.h>
 
 #include <gtest/gtest.h>
