@@ -21,6 +21,7 @@
 namespace carom {
 
 class RowStore;
+class SingleConstraint;
 
 /// One feature of something that can touch.
 struct FeatureKey {
@@ -169,29 +170,43 @@ struct ConstraintHead {
   }
 };
 
+/// Where the numbers of the rows of one constraint stand. It is moved only.
+struct RowRoom {
+  double* first = nullptr;    ///< the first number
+  std::size_t size = 0;       ///< so many numbers have room
+  RowStore* store = nullptr;  ///< of the set; null of a single constraint
+
+  RowRoom() = default;
+  /// No room yet, of a set.
+  explicit RowRoom(RowStore* of_set) : store(of_set) {}
+  /// Leaves the other one without room.
+  RowRoom(RowRoom&& other) noexcept { swap(other); }
+  /// Both exchange their room, so that none is lost when members of a set change places.
+  RowRoom& operator=(RowRoom&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~RowRoom() = default;
+
+private:
+  void swap(RowRoom& other) {
+    assert(size == 0 || store != nullptr);  // that of a single constraint is within it
+    assert(other.size == 0 || other.store != nullptr);
+    std::swap(first, other.first);
+    std::swap(size, other.size);
+    std::swap(store, other.store);
+  }
+};
+
 /// A constraint with its rows. It stands in a set, which holds the numbers of the rows of all (ConstraintSet,
 /// core/constraint_set.h), or alone (SingleConstraint); nothing else copies one, and what is moved stays in
 /// the same set.
 class Constraint : public ConstraintHead {
 public:
   /// A constraint of a set. \param store of the set, which must outlive it
-  explicit Constraint(RowStore& store) { room_.store = &store; }
-  Constraint(const Constraint&) = delete;
-  Constraint& operator=(const Constraint&) = delete;
-  /// Takes the place of another constraint with its room for rows.
-  Constraint(Constraint&& other) noexcept : ConstraintHead(other), room_(other.room_) {
-    assert(room_.size == 0 || room_.store != nullptr);  // a single one keeps its room
-    other.room_ = {};
-  }
-  /// Takes the numbers of another constraint, and exchanges the room for rows with it, so that none is lost
-  /// when members of a set change places.
-  Constraint& operator=(Constraint&& other) noexcept {
-    assert(room_.size == 0 || room_.store != nullptr);
-    assert(other.room_.size == 0 || other.room_.store != nullptr);
-    static_cast<ConstraintHead&>(*this) = other;
-    std::swap(room_, other.room_);
-    return *this;
-  }
+  explicit Constraint(RowStore& store) : room_(&store) {}
+  Constraint(SingleConstraint&&) = delete;  // its room is within it
+  Constraint& operator=(SingleConstraint&&) = delete;
 
   /// Gives it rows of the bodies that it has; their numbers are to be written, all of them. Behind a single
   /// row stands one of zeros: a limit has no velocity along a tangent. \param count 1 to max_rows
@@ -208,6 +223,7 @@ public:
   }
   /// Takes the numbers of the rows of a constraint that has as many, of the same bodies.
   void take_rows(const Constraint& other) {
+    assert(columns() == other.columns());
     start_rows(other.rows);
     std::copy_n(other.room_.first, rows * columns(), room_.first);
   }
@@ -272,16 +288,13 @@ public:
   }
 
 protected:
-  /// Where the numbers of its rows stand.
-  struct Room {
-    double* first = nullptr;    ///< the first of them
-    std::size_t size = 0;       ///< so many have room
-    RowStore* store = nullptr;  ///< of its set; null of a single constraint
-  };
   /// A constraint without room for rows.
   Constraint() = default;
-
-  Room room_;  ///< of its rows
+  /// Stands alone, with room of its own.
+  void stand_alone(double* numbers, std::size_t count) {
+    room_.first = numbers;
+    room_.size = count;
+  }
 
 private:
   /// Calls f(number of row i, its place among all velocities).
@@ -305,6 +318,8 @@ private:
   }
 
   CAROM_API void grow(std::size_t needed);
+
+  RowRoom room_;
 };
 
 }  // namespace carom

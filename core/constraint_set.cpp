@@ -2,6 +2,8 @@
 
 #include <carom/core/constraint_set.h>
 
+#include <algorithm>
+
 namespace carom {
 
 namespace {

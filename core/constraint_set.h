@@ -6,7 +6,6 @@
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -88,10 +87,17 @@ public:
   void resize(std::size_t count);
   /// Takes copies of constraints of another set in place of its own.
   void assign(std::span<const Constraint> others);
-  /// Takes out the constraints that a predicate is true of.
+  /// Takes out the constraints that a predicate is true of. It is asked once of each, in their order, and may
+  /// change those that stay.
   template <class Predicate>
   void remove_if(Predicate&& is_unwanted) {
-    count_ = static_cast<std::size_t>(std::remove_if(begin(), end(), is_unwanted) - begin());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (is_unwanted(list_[i])) continue;
+      if (kept < i) list_[kept] = std::move(list_[i]);
+      ++kept;
+    }
+    count_ = kept;
   }
 
 private:
@@ -109,11 +115,8 @@ private:
 /// A constraint by itself. One of bodies in the plane asks for no memory.
 class SingleConstraint : public Constraint {
 public:
-  SingleConstraint() { stand_alone(); }
-  explicit SingleConstraint(const Constraint& other) {
-    stand_alone();
-    take(other);
-  }
+  SingleConstraint() { stand_alone(numbers_.data(), numbers_.size()); }
+  explicit SingleConstraint(const Constraint& other) : SingleConstraint() { take(other); }
   SingleConstraint(const SingleConstraint& other) : SingleConstraint(static_cast<const Constraint&>(other)) {}
   SingleConstraint& operator=(const SingleConstraint& other) {
     return *this = static_cast<const Constraint&>(other);
@@ -131,8 +134,6 @@ public:
 private:
   friend class Constraint;
   static constexpr std::size_t of_two_in_plane = 12;  // numbers: two rows of six
-
-  void stand_alone() { room_ = {numbers_.data(), numbers_.size(), nullptr}; }
 
   std::array<double, of_two_in_plane> numbers_;
   std::unique_ptr<double[]> more_;  // for more of them

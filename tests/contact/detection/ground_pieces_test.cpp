@@ -225,7 +225,7 @@ TEST(GroundPieces, RowsAreTheRatesOfTheGapAndDriftIsTheirs) {
                    ground.pieces.side(0, ground.shapes.motion(0, ground.places)), at, rows);
     return rows;
   };
-  const Constraint rows = rows_at(0);
+  const SingleConstraint rows = rows_at(0);
   EXPECT_NEAR(rows.velocity(0, v.data()), rate([&](double t) { return gap_at(t).gap; }), 1e-11);
   for (int row = 0; row < 2; ++row) {
     EXPECT_NEAR(rows.drift[static_cast<std::size_t>(row)],

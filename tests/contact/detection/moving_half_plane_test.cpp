@@ -161,7 +161,7 @@ TEST(MovingHalfPlane, NormalVelocityIsTheRateOfTheGap) {
     const double t = random.uniform(-2.0, 2.0);
     for (std::size_t pair = 0; pair < model.pairs(); ++pair) {
       const double expected = rate([&](double time) { return model.contact(pair, time).gap; }, t);
-      const Constraint contact = model.contact(pair, t);
+      const SingleConstraint contact = model.contact(pair, t);
       EXPECT_NEAR(contact.velocity(0, model.state().v.data()), expected, by_differences);
     }
   }
@@ -177,7 +177,7 @@ TEST(MovingHalfPlane, AccelerationIsTheRateOfTheContactVelocity) {
       for (int row = 0; row < 2; ++row) {
         const double expected = rate(
             [&](double time) {
-              const Constraint contact = model.contact(pair, time);
+              const SingleConstraint contact = model.contact(pair, time);
               return contact.velocity(row, model.state().v.data());
             },
             t);
@@ -196,7 +196,7 @@ TEST(MovingHalfPlane, ItsVelocityIsThatOfThePlaceThatIsTouched) {
     const Motion plane(random);
     MovingPlane model(random, radius, plane);
     const double t = random.uniform(-2.0, 2.0), h = random.uniform(0.0, 0.1);
-    const Constraint contact = model.contact_of_step(0, t, h);
+    const SingleConstraint contact = model.contact_of_step(0, t, h);
     const Vec<2> n(contact.row(0)[0], contact.row(0)[1]);
     // The arm from the centre of mass to the place that is touched, from the rows of the jacobian.
     const double rx = contact.row(0)[2], ry = -contact.row(1)[2];
@@ -236,7 +236,7 @@ TEST(MovingHalfPlane, WhatSlidesAlongItWhileItTurnsIsFollowedThroughAStep) {
     MovingPlane model(random, 0.3, plane);
     const double t = random.uniform(-2.0, 2.0);
     const auto error = [&](double h) {
-      const Constraint contact = model.contact_of_step(1, t, h);  // of the particle
+      const SingleConstraint contact = model.contact_of_step(1, t, h);  // of the particle
       const State& state = model.state();
       const Vec<2> v(state.v[3], state.v[4]), o_rate(plane.x.rate(t + h), plane.y.rate(t + h));
       const Vec<2> n(contact.row(0)[0], contact.row(0)[1]);
