@@ -5,7 +5,6 @@
 /// bodies to impulses. It is made here only, from any response (core/dynamics/body_response.h), and goes back
 /// to the bodies as B H^T P.
 
-#include <carom/contact/solvers/contact_problem.h>
 #include <carom/core/constraint.h>
 #include <carom/core/dynamics/body_response.h>
 #include <carom/core/export.h>

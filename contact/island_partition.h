@@ -4,7 +4,7 @@
 /// Islands: bodies, or components, that constraints join while they are active. They are found anew in every
 /// step and at every event, move nothing but a list of constraints, and are the unit of the contact problem.
 
-#include <carom/core/constraint_set.h>
+#include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 #include <carom/core/numerics/union_find.h>

@@ -98,11 +98,9 @@ void add(const Outlines& outlines, Index i, Index j, const ContactQuery& query, 
   const std::vector<BodyOutline>& list = outlines.of_bodies().list();
   const double margin = query.lasting == nullptr ? query.margin : any_gap;
   const ConvexOutline of_a = placed_outline(list[i], memory), of_b = placed_outline(list[j], memory);
-  const auto add_if_any = [&](const Touch& found) {
-    Touch touch = found;
-    if (!(touch.gap.gap <= query.margin) &&
-        !(touch.gap.gap > query.margin && outlines.lasts(touch, query, memory.trial)))
-      return false;
+  const auto add_if_any = [&](Touch touch) {
+    const bool touches = touch.gap.gap <= query.margin, is_apart = touch.gap.gap > query.margin;
+    if (!touches && !(is_apart && outlines.lasts(touch, query, memory.trial))) return false;
     memory.touching.push_back(touch);
     return true;
   };

@@ -26,9 +26,9 @@ struct BodyContactSearch {
   std::vector<Vec<2>> placed;                             ///< vertices of all outlines
   std::vector<RowSide> sides;                             ///< bodies of all outlines
   std::vector<std::pair<Index, Index>> pairs;             ///< of outlines that may touch
-  std::vector<Touch> touching;                            ///< of those, contacts
-  std::vector<ConstraintKey> lasting;                     ///< contacts of the step before, and
-  std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< outlines of those that are of bodies
+  std::vector<Touch> touching;                            ///< contacts among `pairs`
+  std::vector<ConstraintKey> lasting;                     ///< contacts of the step before
+  std::vector<std::pair<Index, Index>> pairs_of_lasting;  ///< outlines of `lasting` that are of bodies
   SingleConstraint trial;                                 ///< of one that turning may have opened
   std::vector<Index> near;                                ///< outlines near a corner
 };

@@ -172,7 +172,10 @@ bool GroundTouches::add(const Search& search, Index on_ground, const GapPoint& l
   const auto same = std::find_if(out.begin() + search.first, out.end(),
                                  [&](const Constraint& other) { return other.key == key; });
   if (same != out.end() && same->gap <= touch.gap.gap) return true;
-  if (SingleConstraint memory; !touches && !outlines.lasts(touch, search.query, memory)) return false;
+  if (!touches) {
+    SingleConstraint memory;
+    if (!outlines.lasts(touch, search.query, memory)) return false;
+  }
   Constraint& contact = same != out.end() ? *same : out.add_contact();
   contact.start_contact();
   outlines.write(touch, search.query, contact);
