@@ -25,6 +25,12 @@ public:
   /// Appends all pairs of a vertex of one of some bodies and an outline of another of them that may touch,
   /// ordered by body, then outline, then the other body and its outline. \param bodies ascending
   void append(std::span<const Index> bodies, std::vector<ContactPair>& out) const;
+  /// Appends the pairs of a vertex of one of two outlines and the other outline, if these may touch: those of
+  /// the vertices of the first one come first. \param a,b their numbers in BodyOutlines
+  void append_between(Index a, Index b, std::vector<ContactPair>& out) const {
+    append(outlines_->list()[a], b, out);
+    append(outlines_->list()[b], a, out);
+  }
 
 private:
   [[nodiscard]] bool may_touch(const BodyOutline& a, const BodyOutline& b) const {

@@ -86,6 +86,8 @@ public:
   [[nodiscard]] bool bodies_touch() const { return outlines_.bodies_touch(); }
   /// Outlines of bodies and on ground, and what the contacts of two of them are.
   [[nodiscard]] const Outlines& outlines() const { return outlines_; }
+  /// Contacts of the outlines of bodies with pieces of shapes on ground.
+  [[nodiscard]] const GroundTouches& on_ground() const { return on_ground_; }
   /// Contacts of rounded points of bodies with shapes on ground that have no pieces.
   [[nodiscard]] const PointContacts& points() const { return points_; }
   /// Limits of joints, and friction in them.

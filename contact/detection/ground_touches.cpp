@@ -184,30 +184,43 @@ bool GroundTouches::add(const Search& search, Index on_ground, const GapPoint& l
 
 void GroundTouches::append_pairs(const Outlines& outlines, Range bodies,
                                  std::vector<ContactPair>& out) const {
-  const GroundPieces& pieces = outlines.on_ground();
+  const auto on_ground = static_cast<Index>(outlines.on_ground().outlines().size());
   for (Index i = begin_[bodies.begin]; i < begin_[bodies.end]; ++i) {
-    const BodyOutline& a = outlines.of_bodies().list()[i];
-    for (Index on_ground = 0; on_ground < pieces.outlines().size(); ++on_ground) {
-      const GroundOutline& b = pieces.outlines()[on_ground];
-      if (!outlines.may_touch(a, b)) continue;
-      const ContactPair pair{.body = a.body, .ground_shape = b.shape};
-      // Of two round ends one is enough.
-      const bool is_peg = b.form == GroundPiece::Form::solid && b.vertices.size() == 1;
-      for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
-        if (is_peg && a.vertices.size() > 1) break;
-        out.push_back(pair);
-        out.back().feature = vertex;
-        out.back().outline = outlines.of_ground(on_ground);
-      }
-      const bool point_at_corners = a.is_point() && b.radius == 0.0 && !is_peg;
-      if ((a.vertices.size() == 1 && !point_at_corners) || b.is_hollow()) continue;
-      for (Index vertex = b.vertices.begin; vertex < b.vertices.end; ++vertex) {
-        if (!pieces.is_corner(vertex)) continue;
-        out.push_back(pair);
-        out.back().outline = i;
-        out.back().feature = outlines.of_ground_vertex(vertex);
-      }
-    }
+    for (Index j = 0; j < on_ground; ++j) carom::append_pairs(outlines, i, j, out);
+  }
+}
+
+void GroundTouches::list_near(FunctionRef<Box<2>(Index shape)> box_in, std::vector<Index>& out) const {
+  out.clear();
+  for (const Family& family : families_) {
+    family.grid.for_overlapping(box_in(family.shape),
+                                [&](const OwnedBox<2>& piece) { out.push_back(piece.number); });
+    out.insert(out.end(), family.unbounded.begin(), family.unbounded.end());
+  }
+  std::sort(out.begin(), out.end());
+}
+
+void append_pairs(const Outlines& outlines, Index outline, Index on_ground, std::vector<ContactPair>& out) {
+  const GroundPieces& pieces = outlines.on_ground();
+  const BodyOutline& a = outlines.of_bodies().list()[outline];
+  const GroundOutline& b = pieces.outlines()[on_ground];
+  if (!outlines.may_touch(a, b)) return;
+  const ContactPair pair{.body = a.body, .ground_shape = b.shape};
+  // Of two round ends one is enough.
+  const bool is_peg = b.form == GroundPiece::Form::solid && b.vertices.size() == 1;
+  for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
+    if (is_peg && a.vertices.size() > 1) break;
+    out.push_back(pair);
+    out.back().feature = vertex;
+    out.back().outline = outlines.of_ground(on_ground);
+  }
+  const bool point_at_corners = a.is_point() && b.radius == 0.0 && !is_peg;
+  if ((a.vertices.size() == 1 && !point_at_corners) || b.is_hollow()) return;
+  for (Index vertex = b.vertices.begin; vertex < b.vertices.end; ++vertex) {
+    if (!pieces.is_corner(vertex)) continue;
+    out.push_back(pair);
+    out.back().outline = outline;
+    out.back().feature = outlines.of_ground_vertex(vertex);
   }
 }
 

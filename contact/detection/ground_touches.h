@@ -4,6 +4,7 @@
 /// Where bodies touch pieces of shapes on ground: pairs of a body's outline and an outline on ground whose
 /// gap is closed.
 
+#include <carom/contact/detection/box.h>
 #include <carom/contact/detection/box_grid.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
@@ -12,6 +13,7 @@
 #include <carom/contact/detection/outlines.h>
 #include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
+#include <carom/core/function_ref.h>
 
 #include <optional>
 #include <vector>
@@ -25,10 +27,11 @@ public:
 
   /// Appends the contacts of one body with pieces that a query asks for, outline by outline.
   void find(const Outlines& outlines, Index body, const ContactQuery& query, ConstraintSet& out) const;
-  /// Appends all pairs of some bodies and the ground that may touch, ordered by body: each vertex of a body
-  /// against each outline on ground; and, where the body has edges or is a point, each corner of the ground
-  /// against each outline of the body.
+  /// Appends all pairs of some bodies and the ground that may touch, ordered by body, then outline.
   void append_pairs(const Outlines& outlines, Range bodies, std::vector<ContactPair>& out) const;
+  /// Lists the pieces that overlap a box, and those that have no bounds, ascending. \param box_in the box in
+  /// the frame of a shape that moves; asked with `none` of what is at rest
+  void list_near(FunctionRef<Box<2>(Index shape)> box_in, std::vector<Index>& out) const;
 
 private:
   /// Pieces at rest, or those of one shape that moves, in its frame.
@@ -51,5 +54,12 @@ private:
   std::vector<Index> begin_;  // of each body: its first outline
   std::vector<Family> families_;
 };
+
+/// Appends the pairs of an outline of a body and one on ground, if they may touch: each vertex of the body
+/// against the outline on ground; and, where the body has edges or is a point, each corner of the ground
+/// against the outline of the body. \param outline,on_ground their numbers among those of bodies, and among
+/// those on ground
+CAROM_API void append_pairs(const Outlines& outlines, Index outline, Index on_ground,
+                            std::vector<ContactPair>& out);
 
 }  // namespace carom

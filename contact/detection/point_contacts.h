@@ -62,6 +62,11 @@ public:
   [[nodiscard]] std::size_t count_pairs(Range components) const;
   /// Appends all pairs of one component, in the order of find().
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
+  /// True of a pair whose point stands off the centre of mass of its body: its gap changes where the body
+  /// turns.
+  [[nodiscard]] bool turns(const ContactPair& pair) const {
+    return pair.feature != none && features_.points()[pair.feature].centre != std::array<double, 3>{};
+  }
   /// Law of a pair.
   [[nodiscard]] const Surface& law(const ContactPair& pair) const {
     return laws_.law(pair.material, pair.ground_shape);

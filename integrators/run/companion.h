@@ -44,7 +44,7 @@ struct Rhythm {
 };
 
 /// Contacts that close where the next step begins, of those that are slower than the capture speed, or are
-/// more than a step may have (TimeStepping::impacts, closing_search.h).
+/// more than a step may have (TimeStepping::impacts, closing_counts.h).
 struct ClosingNotes {
   /// Nothing is known of the way here: all that approach rebound.
   bool all_free = true;

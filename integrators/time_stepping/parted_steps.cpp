@@ -1,5 +1,6 @@
 // Problem: a step in which nothing passes through anything, or bodies are hit when they meet.
 
+#include <carom/core/numerics/never.h>
 #include <carom/core/run_error.h>
 #include <carom/integrators/time_stepping/added_reports.h>
 #include <carom/integrators/time_stepping/parted_steps.h>
@@ -12,27 +13,35 @@ namespace carom {
 
 namespace {
 
-/// Searches for what passes through anything; null where nothing does.
-std::unique_ptr<PassageSearch> make_passages(const Assembly& assembly, const TimeStepper& stepper) {
-  const TimeStepping& options = stepper.options();
-  const bool located = options.impacts == ImpactTimes::located;
-  if (assembly.layout()->dimension() != 2 || !(located || options.overlaps.never_tunnel)) return nullptr;
-  auto passages = std::make_unique<PassageSearch>(assembly, stepper.detector(), options,
-                                                  located ? Passages::of_far_sides : Passages::all);
-  return passages->finds_any() ? std::move(passages) : nullptr;
+/// Contacts that are looked for. Where bodies that ground hits are followed by themselves others are only
+/// found if they close on the way and are open at its end.
+StepContacts contacts_looked_for(const Assembly& assembly, const TimeStepper& stepper) {
+  if (stepper.ends_at_closings()) return StepContacts::all;
+  const Detector& detector = stepper.detector();
+  const bool located = stepper.options().impacts == ImpactTimes::located;
+  const bool any = detector.outlines().ground_touches() || detector.points().needs_rotations();
+  return located && any && assembly.layout()->dimension() == 2 ? StepContacts::of_turns : StepContacts::none;
+}
+
+/// Searches for closings; null where there are none to be found.
+std::unique_ptr<StepClosings> make_closings(const Assembly& assembly, const TimeStepper& stepper) {
+  const StepContacts contacts = contacts_looked_for(assembly, stepper);
+  const bool of_passages = assembly.layout()->dimension() == 2 && stepper.options().overlaps.never_tunnel;
+  if (contacts == StepContacts::none && !of_passages) return nullptr;
+  auto closings = std::make_unique<StepClosings>(assembly, stepper.detector(), stepper.options(), contacts);
+  return closings->finds_any() ? std::move(closings) : nullptr;
 }
 
 }  // namespace
 
 bool PartedSteps::needed(const Assembly& assembly, const TimeStepper& stepper) {
-  return stepper.ends_at_closings() || make_passages(assembly, stepper) != nullptr;
+  return make_closings(assembly, stepper) != nullptr;
 }
 
 PartedSteps::PartedSteps(const Assembly& assembly, TimeStepper& stepper)
-    : stepper_(&stepper), passages_(make_passages(assembly, stepper)) {
-  if (stepper.ends_at_closings()) {
-    closings_ = std::make_unique<ClosingSearch>(assembly, stepper.detector(), stepper.options());
-  }
+    : stepper_(&stepper), closings_(make_closings(assembly, stepper)) {
+  if (contacts_looked_for(assembly, stepper) != StepContacts::none)
+    counts_ = std::make_unique<ClosingCounts>(assembly, stepper.detector(), stepper.options());
 }
 
 void PartedSteps::make_part(double length, double end) {
@@ -55,54 +64,70 @@ bool PartedSteps::may_search() const {
   return done_.companion.closings.steps_owed + made_ < most;
 }
 
-/// The first pair that comes deep on the way of the part. Bodies that are moved out of something at its end
-/// are not looked at on that way: it does not grow shorter with the part.
-PassageSearch::Passage PartedSteps::first_passage() {
-  if (!passages_) return {};
+/// The state behind the impacts at the start of the part.
+const State& PartedSteps::after_impacts() const {
   const TimeStepper::LastStep last = stepper_->last();
-  if (!stepper_->options().project_gaps) return passages_->first(done_.state, trial_.state, *last.flights);
-  came_ = trial_.state;
-  last.projection->take_back(came_);
-  return passages_->first(done_.state, came_, *last.flights);
+  return last.after_impacts != nullptr ? *last.after_impacts : done_.state;
 }
 
-/// Takes note of what closes at the end of a part. \param hit at which it ends; null where it ends elsewhere
-void PartedSteps::note_closings(const ClosingSearch::Closing* hit) {
+/// The first closing on the way of the part. Bodies that are moved out of something at its end are not looked
+/// at on that way: it does not grow shorter with the part.
+StepClosing PartedSteps::first_closing(bool searches) {
+  const TimeStepper::LastStep last = stepper_->last();
+  const bool moves_out = stepper_->options().project_gaps;
+  if (moves_out) {
+    came_ = trial_.state;
+    last.projection->take_back(came_);
+  }
+  const auto closes = [&](const SweptPair& pair) { return searches && !counts_->is_given_up(pair.key); };
+  return closings_->first({done_.state, moves_out ? came_ : trial_.state, after_impacts().v, *last.flights,
+                           trial_.companion.modes},
+                          closes);
+}
+
+/// Takes note of the contacts that close at the end of a part. \param hit at which it ends; null where it
+/// ends elsewhere
+void PartedSteps::note_closings(const StepClosing* hit) {
   bool known = false;
   const auto accelerations = [&]() -> const std::vector<double>& {
     if (std::exchange(known, true)) return accelerations_;
-    const TimeStepper::LastStep last = stepper_->last();
-    const State& begin = last.after_impacts != nullptr ? *last.after_impacts : done_.state;
-    last.flights->write_accelerations(begin.v, trial_.state, trial_.state.time - done_.state.time,
-                                      accelerations_);
+    stepper_->last().flights->write_accelerations(after_impacts().v, trial_.state,
+                                                  trial_.state.time - done_.state.time, accelerations_);
     return accelerations_;
   };
-  closings_->note(trial_.state, hit, accelerations, trial_.companion.closings);
+  counts_->find(trial_.state, trial_.companion.modes);
+  if (hit != nullptr && !counts_->lists_parts_of(hit->key)) closings_->leave_aside(hit->pair.pair);
+  if (!stepper_->ends_at_closings()) return;
+  counts_->note(trial_.state, hit == nullptr ? nullptr : &hit->key, accelerations, trial_.companion.closings);
+}
+
+/// True where a part may end whatever the gap is then: where something comes deep, and where the body of a
+/// closing is hit and flies on within the part.
+bool PartedSteps::is_followed(const StepClosing& closing) const {
+  return closing.is_passage || stepper_->last().flights->follow(closing.pair.pair);
 }
 
 /// A part up to the end of the step, or to the first closing: the root of a gap over the length of the part,
 /// by Newton's method, kept between an end at which all is open and one at which it is not. What would leave
 /// a thing on its far side by the end of a part is in it at an earlier end.
 void PartedSteps::make_part_up_to(const Whole& whole, double length) {
-  const double aim = closings_ ? 0.5 * closings_->rounding() : 0.0, begin = done_.state.time;
-  const bool searches = closings_ && may_search();
-  double open = begin, closed = std::numeric_limits<double>::infinity();
-  ClosingSearch::Closing found;
-  PassageSearch::Passage passage;  // the last one found
-  bool hits = false;               // the part ends where a contact closes
+  const double begin = done_.state.time;
+  const bool searches = counts_ && may_search();
+  double open = begin, closed = never;
+  StepClosing found;  // the one that is headed for
+  bool ends_there = false;
   for (double end = whole.end;;) {
     make_part(length, end);
-    if (closings_) found = closings_->look(done_.state, trial_.state, trial_.companion.modes);
-    const bool is_late = searches && closings_->is_late(found);
-    const PassageSearch::Passage first = first_passage();
-    const bool passes = first.time < end;
-    if (passes) passage = first;
-    (is_late || passes ? closed : open) = end;
+    const StepClosing first = first_closing(searches);
+    const bool is_late = first.time < end;
+    if (is_late) found = first;
+    (is_late ? closed : open) = end;
     // A body may be hit on one way and not on another that is hardly longer.
-    if (passes && !(first.time > open)) open = begin;
-    hits = !passes && (is_late || (searches && closings_->is_now(found)));
-    if (open == end && (end == whole.end || hits || end == passage.time)) break;
-    double next = passes ? first.time : end - (found.gap + aim) / found.rate;
+    if (is_late && is_followed(first) && !(first.time > open)) open = begin;
+    if (!is_late && end < whole.end && !is_followed(found)) closings_->look_at_end(found);
+    ends_there = !is_late && end < whole.end && (found.gap <= found.shallow || is_followed(found));
+    if (open == end && (end == whole.end || ends_there)) break;
+    double next = is_late ? first.time : end - (found.gap - found.aim()) / found.rate;
     if (!(next > open && next < closed)) next = 0.5 * (open + closed);
     const bool is_between = next > open && next < closed;
     if (!is_between && end == closed) break;  // as near as times can be told apart
@@ -110,12 +135,13 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
     length = end - begin;
   }
   const bool early = trial_.state.time < whole.end;
-  if (early && ++parts_ > most_parts) fail(hits ? found.key : passage.key, whole);
-  if (!closings_) return;
-  // What is not searched for any more is told.
-  if ((!searches && closings_->is_late(found)) || closings_->any_given_up())
-    ++trial_.companion.statistics.cut_sequences;
-  note_closings(early && hits ? &found : nullptr);
+  if (early && ++parts_ > most_parts) fail(found.key, whole);
+  if (!counts_) return;
+  // A closing that is not looked for any more is told.
+  if (closings_->any_left_out()) ++trial_.companion.statistics.cut_sequences;
+  const bool hits = early && !is_followed(found);
+  if (hits) closings_->look_at_end(found);
+  note_closings(hits ? &found : nullptr);
 }
 
 [[noreturn]] void PartedSteps::fail(const ConstraintKey& key, const Whole& whole) const {
@@ -135,7 +161,8 @@ void PartedSteps::step(State& state, Companion& companion, double step, double e
   done_.state = state;
   done_.companion = companion;
   parts_ = made_ = 0;
-  if (closings_) closings_->begin_step();
+  closings_->begin_step();
+  if (counts_) counts_->begin_step();
   const Whole whole{state.time, step, end_time};
   for (double length = step; done_.state.time < end_time; length = end_time - done_.state.time) {
     make_part_up_to(whole, length);

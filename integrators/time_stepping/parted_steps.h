@@ -15,8 +15,8 @@
 #include <carom/core/export.h>
 #include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/step_report.h>
-#include <carom/integrators/time_stepping/closing_search.h>
-#include <carom/integrators/time_stepping/passage_search.h>
+#include <carom/integrators/time_stepping/closing_counts.h>
+#include <carom/integrators/time_stepping/step_closings.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
 
 #include <memory>
@@ -54,15 +54,17 @@ private:
   };
   void make_part(double length, double end);
   void make_part_up_to(const Whole& whole, double length);
-  [[nodiscard]] PassageSearch::Passage first_passage();
+  [[nodiscard]] StepClosing first_closing(bool searches);
   [[nodiscard]] bool may_search() const;
-  void note_closings(const ClosingSearch::Closing* hit);
+  [[nodiscard]] const State& after_impacts() const;
+  [[nodiscard]] bool is_followed(const StepClosing& closing) const;
+  void note_closings(const StepClosing* hit);
   [[noreturn]] void fail(const ConstraintKey& key, const Whole& whole) const;
   void keep_impulses();
 
   TimeStepper* stepper_;
-  std::unique_ptr<PassageSearch> passages_;  // null where nothing has a far side
-  std::unique_ptr<ClosingSearch> closings_;  // null where nothing is located by parts
+  std::unique_ptr<StepClosings> closings_;
+  std::unique_ptr<ClosingCounts> counts_;  // null where none is looked for
   Run done_, trial_;
   State came_;     // the end of a part before bodies are moved out of others
   int parts_ = 0;  // that ended early

@@ -23,7 +23,7 @@
 namespace carom {
 
 /// Contacts that are closed to rounding and part at the start of a step: they act in it, so that what comes
-/// back in it is held where it is; or they do not, and their next closing is looked for (ClosingSearch).
+/// back in it is held where it is; or they do not, and their next closing is looked for (StepClosings).
 enum class Parting : std::uint8_t { acts, is_free };
 
 /// Finds constraints and islands. Keeps memory.

@@ -17,10 +17,15 @@ void StepFlights::add(const StepInput& in, const LocatedMotion& motion) {
     }
   }
   if (last == nullptr) return;
-  LastFlight flight{body, {}};
+  LastFlight flight{body, motion.body(), {}};
   const double time = (last->end - last->begin) * in.step;
   for (Index i = 0; i < body.v_size; ++i) flight.acceleration[i] = (last->v1[i] - last->v0[i]) / time;
   last_.push_back(flight);
+}
+
+bool StepFlights::follow(const ContactPair& pair) const {
+  const auto is_of = [&](const LastFlight& flight) { return flight.number == pair.body; };
+  return pair.ground_shape != none && std::any_of(last_.begin(), last_.end(), is_of);
 }
 
 std::size_t StepFlights::write_way(const State& start, const State& end, std::vector<State>& out) {

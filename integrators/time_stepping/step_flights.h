@@ -4,7 +4,9 @@
 /// The flights of bodies that shapes on ground hit within a step (LocatedMotion), as far as the whole step is
 /// looked at afterwards: where the ways of bodies have corners, and how loads accelerate them at its end.
 
+#include <carom/contact/detection/contact_pair.h>
 #include <carom/core/export.h>
+#include <carom/core/ids.h>
 #include <carom/core/state.h>
 #include <carom/integrators/time_stepping/located_motion.h>
 #include <carom/integrators/time_stepping/step_input.h>
@@ -27,6 +29,9 @@ public:
   void add(const StepInput& in, const LocatedMotion& motion);
   /// True if no body was hit.
   [[nodiscard]] bool empty() const { return corners_.empty(); }
+  /// True of a pair of a shape on ground and a body that is added: its closings are followed by the motion of
+  /// the body.
+  [[nodiscard]] bool follow(const ContactPair& pair) const;
   /// Writes the corners of the way of all bodies, its ends included: between two of them all coordinates are
   /// taken to change evenly. Of the plane. Returns how many there are; `out` may have more.
   std::size_t write_way(const State& start, const State& end, std::vector<State>& out);
@@ -47,6 +52,7 @@ private:
   // The last flight of a body.
   struct LastFlight {
     BodySlot body;
+    Index number;  // of the body, in the order of assembly
     std::array<double, most_velocities> acceleration;
   };
 

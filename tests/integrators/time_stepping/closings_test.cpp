@@ -1,5 +1,5 @@
 // Impacts that are located where a body is not alone: bodies that touch each other, bodies with joints, laws
-// of impact of their own. Steps end when contacts close (closing_search.h); against the event-driven mode.
+// of impact of their own. Steps end when contacts close (step_closings.h); against the event-driven mode.
 
 #include "tests/allocation_counter.h"
 #include "tests/analytic/convergence.h"

@@ -276,7 +276,7 @@ System fast_discs(bool in_box, int count, double speed, double restitution) {
   if (in_box) system.add(BoxInside{.lower = {-1.0, -1.0}, .upper = {1.0, 1.0}});
   if (!in_box) system.add(CircleInside{.radius = 1.0});
   for (int i = 0; i < count; ++i) {
-    const double angle = 0.7 + 2.3 * i;
+    const double angle = 0.8 + 2.3 * i;
     add_disc(system, 0.1, Vec<2>(-0.4 + 0.4 * (i % 3), -0.4 + 0.4 * (i / 3)),
              speed * Vec<2>(std::cos(angle), std::sin(angle)));
   }

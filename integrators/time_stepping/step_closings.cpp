@@ -1,0 +1,217 @@
+// Problem: on the way of a step, which gap is the first to close, or to become too deep?
+
+#include <carom/core/numerics/never.h>
+#include <carom/integrators/time_stepping/gap_rounding.h>
+#include <carom/integrators/time_stepping/step_closings.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace carom {
+
+namespace {
+
+// Depths, over that of points and bare segments, that a gap may be wrong by.
+constexpr double roundings_of_depth = 1e3;
+
+}  // namespace
+
+StepClosings::StepClosings(const Assembly& assembly, const Detector& detector, const TimeStepping& options,
+                           StepContacts contacts)
+    : assembly_(&assembly),
+      detector_(&detector),
+      of_contacts_(contacts != StepContacts::none),
+      rounding_(gap_rounding(assembly, options)),
+      capture_(CaptureRule::of(assembly, options)),
+      levels_(detector, roundings_of_depth * rounding_,
+              options.impacts == ImpactTimes::located ? Passages::of_far_sides : Passages::all),
+      path_(assembly, detector),
+      pairs_(assembly, detector, contacts == StepContacts::all ? FlatPairs::all : FlatPairs::turning),
+      depths_(detector) {}
+
+/// Lists the contacts of a step, of several entries of one contact the last.
+void StepClosings::list_acted(std::span<const std::pair<ConstraintKey, ContactMode>> modes) {
+  acted_.clear();
+  for (const auto& [key, mode] : modes) {
+    const std::optional<ContactPair> pair = detector_->outlines().pair_of(key);
+    Acted entry{key, none, none, acted_.size(), mode == ContactMode::open};
+    if (pair) {
+      entry.key = {};
+      entry.feature = pair->feature;
+      entry.outline = pair->outline;
+    }
+    acted_.push_back(entry);
+  }
+}
+
+/// True if a contact acted up to the end of the way.
+bool StepClosings::acts(const SweptPair& pair) const {
+  const bool has_outline = pair.pair.has_outline();
+  const auto is_of = [&](const Acted& entry) {
+    return has_outline ? entry.feature == pair.pair.feature && entry.outline == pair.pair.outline
+                       : entry.outline == none && entry.key == pair.key;
+  };
+  const auto last = std::find_if(acted_.rbegin(), acted_.rend(), is_of);
+  return last != acted_.rend() && !last->open;
+}
+
+/// How much nearer any two things may come on the path [m].
+double StepClosings::most_approach() const {
+  double most = 0.0, of_ground = 0.0;
+  Index body = 0;
+  for (const BodySlot slot : assembly_->layout()->bodies()) {
+    double moved = std::hypot(path_.displacement(slot.v), path_.displacement(slot.v + 1));
+    if (slot.v_size > 2) moved += levels_.reaches()[body] * std::abs(path_.displacement(slot.v + 2));
+    most = std::max(most, moved);
+    ++body;
+  }
+  // Of ground twice what its speed at either end makes of it.
+  const Outlines& outlines = detector_->outlines();
+  for (const GroundOutline& outline : outlines.on_ground().outlines()) {
+    for (const PathSample& at : {path_.begin(), path_.end()}) {
+      const GroundMotion* const motion = outlines.shapes().motion(outline.shape, at.places);
+      if (motion == nullptr) continue;
+      of_ground = std::max(of_ground, std::hypot(motion->velocity[0], motion->velocity[1]) +
+                                          outline.reach * std::abs(motion->spin));
+    }
+  }
+  return 2.0 * (most + path_.length() * of_ground);
+}
+
+StepClosing StepClosings::first(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes) {
+  StepClosing first;
+  overlaps_.clear();
+  left_out_ = false;
+  if (of_contacts_) list_acted(way.acted);
+  const bool by_chords = !of_contacts_ || !way.flights.empty();
+  if (!by_chords) {
+    change_.resize(way.end.v.size());
+    for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = way.end.v[i] - way.after_impacts[i];
+  }
+  if (way.flights.empty()) {
+    path_.set(way.start, way.end, by_chords ? nullptr : change_.data());
+    search(way, closes, first);
+    return first;
+  }
+  const std::size_t corners = way.flights.write_way(way.start, way.end, corners_);
+  for (std::size_t i = 1; i < corners && first.time == never; ++i) {
+    if (!(corners_[i].time > corners_[i - 1].time)) continue;  // as near as times can be told apart
+    path_.set(corners_[i - 1], corners_[i], nullptr);
+    search(way, closes, first);
+  }
+  return first;
+}
+
+/// True of a pair that is open where the path begins, and whose contact does not act on it.
+bool StepClosings::may_close(const StepWay& way, const SweptPair& pair) const {
+  if (!(pair.gap >= -rounding_) || way.flights.follow(pair.pair) || acts(pair)) return false;
+  return std::find(aside_.begin(), aside_.end(), pair.pair) == aside_.end();
+}
+
+/// Searches the path.
+void StepClosings::search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes,
+                          StepClosing& first) {
+  if (!of_contacts_ && !(most_approach() > levels_.thinnest())) return;
+  const std::span<const NearOutlines> near = pairs_.find_outlines(path_);
+  if (of_contacts_) {
+    for (const SweptPair& pair : pairs_.find_pairs(path_)) {
+      if (!may_close(way, pair)) continue;
+      StepClosing closing;
+      closing.pair = pair;
+      closing.key = pair.key;
+      closing.deep = -rounding_;
+      if (!closes(pair)) {
+        look_at_end(closing);
+        left_out_ = left_out_ || (closing.gap < closing.deep && counts(closing, closing.rate));
+      } else if (reaches(closing, first.time)) {
+        first = closing;
+      }
+    }
+  }
+  search_depths(way, near, first);
+}
+
+/// Searches the path for depths.
+void StepClosings::search_depths(const StepWay& way, std::span<const NearOutlines> near, StepClosing& first) {
+  constexpr double fine = 0.5;  // of the depth
+  for (const NearOutlines& of : near) {
+    const double allowed = levels_.allowed(of);
+    if (allowed == never) continue;
+    const double level = gap_at_start(way, of) - allowed;
+    const double time = depths_.first(path_, of, level, fine * allowed, first.time);
+    if (!(time < first.time)) continue;
+    first = {};
+    first.time = time;
+    first.is_passage = true;
+    first.key = depths_.key_at_begin(path_, of);
+  }
+}
+
+/// The gap of two outlines at the start of the way, 0 of such as were apart [m].
+double StepClosings::gap_at_start(const StepWay& way, const NearOutlines& of) {
+  if (path_.begin().state.time == way.start.time) {
+    const double gap = std::min(depths_.gap_at_begin(path_, of), 0.0);
+    if (gap < 0.0) overlaps_.emplace_back(of, gap);
+    return gap;
+  }
+  const auto is_of = [&](const auto& entry) { return entry.first == of; };
+  const auto known = std::find_if(overlaps_.begin(), overlaps_.end(), is_of);
+  return known == overlaps_.end() ? 0.0 : known->second;
+}
+
+/// True if a gap reaches its level on the path before a time.
+bool StepClosings::reaches(StepClosing& closing, double until) {
+  const SweptPair& of = closing.pair;
+  const PathSample from = path_.begin(), to = path_.end();
+  const double way = path_.length() * of.fastest;
+  if (of.gap - way > closing.deep) return false;
+  const PairGap gap = of.gap_of(*detector_);
+  const GapLook begin{from.state.time, true, gap_in(gap, from)};
+  const GapLook end{to.state.time, true, gap_in(gap, to)};
+  if (0.5 * (begin.gap.value + end.gap.value - way) > closing.deep) return false;
+  // Corners that slide along each other tell their features apart to this.
+  constexpr double of_corner = 0.1;
+  ClosingRule rule;
+  rule.level = closing.deep;
+  rule.fine = std::max(rounding_, of_corner * detector_->outlines().on_ground().lengths().corner);
+  rule.fastest = of.fastest;
+  rule.sixth = of.sixth;
+  rule.until = until;
+  path_.watch(of.moved_by());
+  const double time = predict_closing(path_, gap, rule, begin, end, PathLook::exact);
+  if (!(time < until)) return false;
+  const StepPolynomial::End there = gap_in(gap, path_.sample(time, PathLook::exact));
+  closing.gap = end.gap.value;
+  closing.rate = end.gap.first;
+  if (!counts(closing, there.first)) return false;
+  const double aimed = time - (there.value - closing.aim()) / there.first;
+  closing.time = there.first < 0.0 && aimed > begin.time ? std::min(aimed, time) : time;
+  return true;
+}
+
+/// False of a contact that closes so slowly, and is open again or opens at the end of the way, that it is not
+/// worth while. A corner that has slid along an edge of the other outline is not open there if the outlines
+/// overlap.
+bool StepClosings::counts(const StepClosing& closing, double rate) {
+  const bool ends_open = !(closing.gap < closing.deep);
+  if (ends_open) {
+    const bool fast = capture_.is_fast(rate);
+    if (fast || !closing.pair.pair.has_outline()) return fast;
+    return depths_.gap_at_end(path_, closing.pair.outlines) < closing.deep;
+  }
+  const bool recedes = !(closing.rate < 0.0);
+  return !recedes || closing.pair.gap - closing.gap > capture_.capture_speed * path_.length();
+}
+
+void StepClosings::look_at_end(StepClosing& closing) {
+  const PathSample end = path_.end();
+  SingleConstraint contact;
+  detector_->contact(closing.pair.pair, end.state, end.evaluation, end.places, contact);
+  closing.gap = contact.gap;
+  closing.rate = contact.normal_velocity(end.state.v);
+  closing.key = contact.key;
+}
+
+}  // namespace carom

@@ -1,0 +1,131 @@
+#pragma once
+
+/// \file
+/// Closings of a step: gaps that reach a level on its way (first_closing.h).
+///
+/// Two kinds of levels are looked for. Where impacts are located and no body is followed by itself
+/// (LocatedMotion), contacts that did not act in the step close: the level is zero (TimeStepping::impacts).
+/// And nothing may come so deep into another thing that it could leave that on its far side: the level is a
+/// depth (passage_levels.h; OverlapRules::never_tunnel, and where impacts are located). Pairs come from the
+/// broad phase of the way (swept_pairs.h). So a contact is found too that closes and is open again by the end
+/// of the step, if it closes faster than the capture speed; a slower one comes at most as deep as a quarter
+/// of what that speed makes in the step.
+///
+/// The way of a step is that between its ends on which velocities change evenly; where a body is hit on it, a
+/// chord up to the impact and another one from there. It leads to the time at which a step is to end, and the
+/// step that ends there says what is true: so an error of the way costs a step, unless it hides a closing.
+
+#include <carom/contact/detection/detector.h>
+#include <carom/contact/detection/first_closing.h>
+#include <carom/contact/detection/outline_depth.h>
+#include <carom/contact/detection/state_path.h>
+#include <carom/contact/detection/swept_pairs.h>
+#include <carom/core/assembly.h>
+#include <carom/core/constraint_set.h>
+#include <carom/core/export.h>
+#include <carom/core/function_ref.h>
+#include <carom/core/state.h>
+#include <carom/integrators/run/companion.h>
+#include <carom/integrators/run/time_stepping.h>
+#include <carom/integrators/time_stepping/capture_rule.h>
+#include <carom/integrators/time_stepping/passage_levels.h>
+#include <carom/integrators/time_stepping/step_flights.h>
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+/// A gap that reaches a level.
+struct StepClosing {
+  double time = never;      ///< when, on the way; infinite: none does [s]
+  bool is_passage = false;  ///< the level is a depth
+  SweptPair pair;           ///< whose gap it is; not of a passage
+  ConstraintKey key;        ///< of the contact
+  double shallow = 0.0;     ///< a step may end at any gap from this one down [m]
+  double deep = 0.0;        ///< to this one [m]
+  double gap = 0.0;         ///< where the way ends [m]
+  double rate = 0.0;        ///< of the gap, there [m/s]
+
+  /// The gap at which a step is to end [m].
+  [[nodiscard]] double aim() const { return 0.5 * (shallow + deep); }
+};
+
+/// The way of a step, or of a part of one.
+struct StepWay {
+  const State& start;
+  const State& end;                          ///< before bodies are moved out of others
+  const std::vector<double>& after_impacts;  ///< velocities behind impacts at the start
+  StepFlights& flights;                      ///< of bodies that are hit on it
+  std::span<const std::pair<ConstraintKey, ContactMode>>
+      acted;  ///< contacts of the step, as Companion::modes
+};
+
+/// Which contacts are looked for, beside passages.
+enum class StepContacts : std::uint8_t {
+  none,      ///< none
+  of_turns,  ///< such as may open again within the step: of outlines, and of points that turn
+  all        ///< also those of other points, and limits of joints
+};
+
+/// Searches ways of steps for closings. Keeps memory only.
+class CAROM_API StepClosings {
+public:
+  /// \param assembly,detector must outlive it
+  StepClosings(const Assembly& assembly, const Detector& detector, const TimeStepping& options,
+               StepContacts contacts);
+
+  /// False if there is nothing to look for.
+  [[nodiscard]] bool finds_any() const { return of_contacts_ || levels_.thinnest() < never; }
+  /// A contact hits within this if a step ends there, and takes part in the next (gap_rounding.h) [m].
+  [[nodiscard]] double rounding() const { return rounding_; }
+  /// A step begins: nothing is left aside any more.
+  void begin_step() { aside_.clear(); }
+  /// Leaves the closings of a pair aside in the rest of the step: it is none of those that the detector
+  /// finds.
+  void leave_aside(const ContactPair& pair) { aside_.push_back(pair); }
+  /// The first closing on a way. \param closes whether a contact is looked for that closes; of others nothing
+  /// but their passages is
+  [[nodiscard]] StepClosing first(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes);
+  /// True if a contact has closed on the way that was searched last, and was not looked for.
+  [[nodiscard]] bool any_left_out() const { return left_out_; }
+  /// Brings gap, rate and key of a closing to the end of the way that was searched last; not of a passage.
+  void look_at_end(StepClosing& closing);
+
+private:
+  struct Acted {
+    ConstraintKey key;
+    Index feature, outline;  // of a pair with an outline; else none
+    std::size_t place;       // in the list
+    bool open;
+  };
+  void list_acted(std::span<const std::pair<ConstraintKey, ContactMode>> modes);
+  [[nodiscard]] bool acts(const SweptPair& pair) const;
+  [[nodiscard]] double most_approach() const;
+  void search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, StepClosing& first);
+  void search_depths(const StepWay& way, std::span<const NearOutlines> near, StepClosing& first);
+  [[nodiscard]] double gap_at_start(const StepWay& way, const NearOutlines& of);
+  [[nodiscard]] bool may_close(const StepWay& way, const SweptPair& pair) const;
+  [[nodiscard]] bool reaches(StepClosing& closing, double until);
+  [[nodiscard]] bool counts(const StepClosing& closing, double rate);
+
+  const Assembly* assembly_;
+  const Detector* detector_;
+  bool of_contacts_;
+  double rounding_;
+  CaptureRule capture_;
+  PassageLevels levels_;
+  StatePath path_;
+  SweptPairs pairs_;
+  OutlineDepth depths_;
+  std::vector<double> change_;  // of velocities on the way
+  std::vector<State> corners_;  // of the way
+  std::vector<Acted> acted_;
+  std::vector<ContactPair> aside_;
+  bool left_out_ = false;
+  std::vector<std::pair<NearOutlines, double>> overlaps_;  // gaps < 0 at the start of the way [m]
+};
+
+}  // namespace carom
