@@ -79,7 +79,6 @@ private:
   [[nodiscard]] double fastest(const StatePath& path, const SweptPair& of) const;
   void bound_point(const StatePath& path, SweptPair& of) const;
 
-  const Assembly* assembly_;
   const Detector* detector_;
   BodyPairs between_bodies_;
   BroadPhase<2> broad_;

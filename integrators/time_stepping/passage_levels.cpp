@@ -47,20 +47,20 @@ PassageLevels::PassageLevels(const Detector& detector, double least_depth, Passa
     : detector_(&detector), least_depth_(least_depth) {
   const Outlines& outlines = detector.outlines();
   reach_.assign(outlines.slots().size(), 0.0);
-  double of_bodies = never, any = never;
+  double of_bodies = never, thinnest = never;
   for (const BodyOutline& outline : outlines.of_bodies().list()) {
     circle_.push_back(circle_in(outlines.of_bodies().described(outline)));
     of_bodies = std::min(of_bodies, circle_.back());
     // Only the vertices turn: the radius around them is the same on all sides.
     reach_[outline.body] = std::max(reach_[outline.body], outline.reach - outline.radius);
   }
-  if (outlines.bodies_touch()) any = of_bodies;
+  if (outlines.bodies_touch()) thinnest = of_bodies;
   const auto on_ground = static_cast<Index>(outlines.on_ground().outlines().size());
   for (Index i = 0; outlines.ground_touches() && i < on_ground; ++i) {
     of_ground_.push_back(circle_in(outlines.on_ground(), i, which));
-    any = std::min(any, of_ground_.back());
+    thinnest = std::min(thinnest, of_ground_.back());
   }
-  thinnest_ = std::max(least_depth, deep * (of_bodies + any));
+  thinnest_ = std::max(least_depth, deep * (of_bodies + thinnest));
 }
 
 double PassageLevels::allowed(const NearOutlines& of) const {
