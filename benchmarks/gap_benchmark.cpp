@@ -1,7 +1,7 @@
 // Cost of the gap of two convex outlines: two discs, a disc and a polygon, two boxes, two polygons of 16
 // vertices.
 
-#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/narrow_phase.h>
 
 #include <benchmark/benchmark.h>
 

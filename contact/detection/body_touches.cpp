@@ -3,7 +3,7 @@
 #include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/contacts_of_two.h>
 #include <carom/contact/detection/corner_meeting.h>
-#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/narrow_phase.h>
 
 #include <algorithm>
 #include <array>
@@ -104,9 +104,6 @@ void add(const Outlines& outlines, Index i, Index j, const ContactQuery& query, 
     memory.touching.push_back(touch);
     return true;
   };
-  if (of_a.size() == 1 && of_b.size() == 1 && margin == any_gap) {
-    return static_cast<void>(add_if_any({i, j, gap_of_vertices(of_a, 0, of_b, 0)}));
-  }
   std::array<GapPoint, 2> found;
   const int count = find_gaps(of_a, of_b, margin, found);
   if (count == 0) return;

@@ -9,9 +9,8 @@
 /// Where they do not overlap, one end of the face and what is closest to it meet.
 
 #include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/gap_features.h>
 #include <carom/contact/detection/gap_point.h>
-#include <carom/contact/detection/gap_vertex_edge.h>
-#include <carom/contact/detection/gap_vertex_vertex.h>
 
 #include <algorithm>
 #include <array>
@@ -67,13 +66,11 @@ struct FeaturePair {
 /// Gap of a pair of features. \param face_is_of_a whether a is the outline with the face
 inline GapPoint gap_of_pair(const FeaturePair& pair, const ConvexOutline& a, const ConvexOutline& b,
                             bool face_is_of_a) {
-  const Index of_a = face_is_of_a ? pair.face_side : pair.other_side;
-  const Index of_b = face_is_of_a ? pair.other_side : pair.face_side;
-  if (face_is_of_a ? pair.face_side_is_edge : pair.other_side_is_edge)
-    return gap_of_edge_of_a(a, of_a, b, of_b);
-  if (face_is_of_a ? pair.other_side_is_edge : pair.face_side_is_edge)
-    return gap_of_edge_of_b(a, of_a, b, of_b);
-  return gap_of_vertices(a, of_a, b, of_b);
+  const ConvexOutline &of_face = face_is_of_a ? a : b, &other = face_is_of_a ? b : a;
+  const Index face_side = pair.face_side + (pair.face_side_is_edge ? of_face.size() : 0U);
+  const Index other_side = pair.other_side + (pair.other_side_is_edge ? other.size() : 0U);
+  return face_is_of_a ? gap_of_features(a, face_side, b, other_side)
+                      : gap_of_features(a, other_side, b, face_side);
 }
 
 /// Pairs of features that meet, one or two.

@@ -55,7 +55,7 @@ FaceChain::Nearest FaceChain::nearest(const Vec<2>& point) const {
                before_head = !is_beyond(edge.head, edge, point, true);
     if (behind_tail && before_head) {
       const double height = edge.height(point), size = std::abs(height);
-      take(outline.size() + i, size, height < -depths[i] ? size : height);
+      take(outline.size() + i, size, height);
     } else {
       take_vertex(behind_tail ? edge.head : edge.tail);
     }

@@ -45,6 +45,10 @@ struct CAROM_API FaceChain {
   [[nodiscard]] Index faces() const { return outline.size() - (is_closed ? 0U : 1U); }
   /// The feature nearest to a point, and the distance of the point.
   [[nodiscard]] Nearest nearest(const Vec<2>& point) const;
+  /// True of a distance from a face that is deeper than its solid is. \param distance negative behind it [m]
+  [[nodiscard]] bool is_below(Index feature, double distance) const {
+    return outline.is_edge(feature) && distance < -depths[feature - outline.size()];
+  }
   /// Margin of a feature. \param rate velocity of the point
   [[nodiscard]] FeatureMargin margin(Index feature, const Vec<2>& point, const Vec<2>& rate) const;
   /// Distance of a point from where its gap has a kink or jumps, if the feature is the nearest one: margin(),

@@ -4,7 +4,7 @@
 
 #include <carom/contact/detection/edge_meeting.h>
 #include <carom/contact/detection/feature_margin.h>
-#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/narrow_phase.h>
 
 #include <algorithm>
 #include <array>
@@ -52,19 +52,11 @@ FeatureRegions::FeatureRegions(const OutlinePair& pair)
 }
 
 Index FeatureRegions::nearest() const {
-  Index feature = none;
-  double distance = 0.0;
-  if (chain_) {
-    const FaceChain::Nearest found = chain_->nearest(place_);
-    feature = found.feature;
-    distance = found.distance;
-  } else {
-    std::array<GapPoint, 2> found;
-    static_cast<void>(
-        find_gaps({{&place_, 1}, 0.0}, outline_, std::numeric_limits<double>::infinity(), found));
-    feature = found[0].feature_b;
-    distance = found[0].gap;
-  }
+  const PlacedOutline point(ConvexOutline{{&place_, 1}, 0.0});
+  const GapPoint found = nearest_gap(point, chain_ ? PlacedOutline(*chain_) : PlacedOutline(outline_));
+  const Index feature = found.feature_b;
+  // What is below the ground is not in it.
+  const double distance = chain_ && chain_->is_below(feature, found.gap) ? -found.gap : found.gap;
   if (!sharp_ || !has_several()) return feature;
   if (hidden_ != HiddenSide::neither || hidden_of_vertex_ != HiddenSide::neither)
     return beside_neighbour(feature);
@@ -197,7 +189,10 @@ Index FeatureRegions::beside_neighbour(Index found) const {
 }
 
 GapPoint FeatureRegions::gap(const ConvexOutline& point, Index feature) const {
-  if (!is_of_vertex(feature)) return tracked_gap(point, 0, outline_, feature);
+  if (!is_of_vertex(feature)) {
+    const PlacedOutline touched = chain_ ? PlacedOutline(*chain_) : PlacedOutline(outline_);
+    return follow_gap(PlacedOutline(point), 0, touched, feature);
+  }
   return gap_along(own_edge(feature), corner_of_vertex(),
                    SharpCorner::of(outline_, corner_before_edge(outline_, feature)));
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -121,8 +120,9 @@ bool coincide(const Vec<2>& one, const Vec<2>& other, double size) {
 
 }  // namespace
 
-int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double margin,
-                       std::array<GapPoint, 2>& out) {
+int GapConvex::find(const PlacedOutline& of_a, const PlacedOutline& of_b, double margin,
+                    std::array<GapPoint, 2>& out) {
+  const ConvexOutline &a = of_a.outline, &b = of_b.outline;
   const double enough = margin + (a.radius + b.radius);
   const SeparatingEdge face_a = widest_face(a, b, enough);
   if (face_a.separation > enough) return 0;
@@ -160,13 +160,6 @@ int find_gaps_of_edges(const ConvexOutline& a, const ConvexOutline& b, double ma
   const GapKind on_facing = is_of_a ? GapKind::edge_of_b : GapKind::edge_of_a;
   const bool is_nearly_parallel = -face.along.dot(facing.along) > cosine_of_parallel;
   return out[1].kind == on_facing && !is_nearly_parallel ? 1 : 2;
-}
-
-GapPoint tracked_gap(const ConvexOutline& a, Index feature_a, const ConvexOutline& b, Index feature_b) {
-  assert(!(a.is_edge(feature_a) && b.is_edge(feature_b)));
-  if (a.is_edge(feature_a)) return gap_of_edge_of_a(a, feature_a - a.size(), b, feature_b);
-  if (b.is_edge(feature_b)) return gap_of_edge_of_b(a, feature_a, b, feature_b - b.size());
-  return gap_of_vertices(a, feature_a, b, feature_b);
 }
 
 }  // namespace carom

@@ -211,9 +211,9 @@ private:
 
 }  // namespace
 
-int find_face_gaps(const ConvexOutline& a, const GroundFace& face, double margin,
-                   std::array<GapPoint, 2>& out) {
-  return Face(a, face).find(margin, out);
+int GapFace::find(const PlacedOutline& a, const PlacedOutline& b, double margin,
+                  std::array<GapPoint, 2>& out) {
+  return Face(a.outline, *b.face).find(margin, out);
 }
 
 }  // namespace carom

@@ -2,10 +2,12 @@
 
 /// \file
 /// Narrow phase of a convex outline and one face of a polyline on ground: one-sided, with neighbours, so that
-/// nothing snags where two faces join.
+/// nothing snags where two faces join. With the face's normal n, a point E of it, and a vertex V before it,
+/// gap = n.(V - E) - r.
 
-#include <carom/contact/detection/convex_outline.h>
+#include <carom/contact/detection/gap_features.h>
 #include <carom/contact/detection/gap_point.h>
+#include <carom/contact/detection/placed_outline.h>
 #include <carom/core/export.h>
 
 #include <array>
@@ -29,19 +31,27 @@ enum class CornerTurn : std::uint8_t { convex, flat, concave };
 /// 0 (tail) and 1 (head), and the edge 2. Where two faces join in a convex corner, that belongs to the face
 /// whose head it is.
 struct GroundFace {
-  Vec<2> before, tail, head, behind;  ///< its ends, and the other ends of its neighbours [m]
-  bool tail_is_free = false;          ///< no neighbour at the tail: the solid ends there, at a right angle
-  bool head_is_free = false;          ///< no neighbour at the head: the solid ends there, at a right angle
+  Vec<2> before = Vec<2>::Zero(), tail = Vec<2>::Zero(), head = Vec<2>::Zero(),
+         behind = Vec<2>::Zero();  ///< its ends, and the other ends of its neighbours [m]
+  bool tail_is_free = false;       ///< no neighbour at the tail: the solid ends there, at a right angle
+  bool head_is_free = false;       ///< no neighbour at the head: the solid ends there, at a right angle
   double depth = std::numeric_limits<double>::infinity();  ///< what is deeper does not touch it [m]
 };
 
-/// Finds the contacts of a body's outline a with a face (b of the gaps) with gap <= `margin` [m], the one
-/// with the least gap first. \returns how many
-///
-/// They are those of find_gaps() with the ground that the face is part of. Normals are that of the face, or,
-/// at a convex corner, between those of the two faces that join there; a corner that is flat or concave
-/// touches nothing itself.
-[[nodiscard]] CAROM_API int find_face_gaps(const ConvexOutline& a, const GroundFace& face, double margin,
-                                           std::array<GapPoint, 2>& out);
+/// Entry of the narrow phase: a disc or a polygon, and a face.
+struct GapFace {
+  /// As NarrowPhase::find.
+  ///
+  /// The contacts are those with the ground that the face is part of. Normals are that of the face, or, at a
+  /// convex corner, between those of the two faces that join there; a corner that is flat or concave touches
+  /// nothing itself.
+  CAROM_API static int find(const PlacedOutline& a, const PlacedOutline& b, double margin,
+                            std::array<GapPoint, 2>& out);
+  /// As NarrowPhase::follow.
+  static GapPoint follow(const PlacedOutline& a, Index feature_a, const PlacedOutline& b, Index feature_b) {
+    const std::array<Vec<2>, 2> ends{b.face->tail, b.face->head};
+    return gap_of_features(a.outline, feature_a, {ends, 0.0}, feature_b);
+  }
+};
 
 }  // namespace carom

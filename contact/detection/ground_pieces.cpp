@@ -2,9 +2,8 @@
 // the next stays the same contact.
 
 #include <carom/contact/detection/flush_faces.h>
-#include <carom/contact/detection/gap_convex.h>
-#include <carom/contact/detection/gap_inside_circle.h>
 #include <carom/contact/detection/ground_pieces.h>
+#include <carom/contact/detection/narrow_phase.h>
 #include <carom/core/registry.h>
 #include <carom/core/system.h>
 
@@ -142,7 +141,7 @@ void GroundPieces::add_solid(GroundPiece piece, Index shape, double surface_spee
   vertices_.insert(vertices_.end(), piece.points.begin(), piece.points.end());
   corners_.resize(vertices_.size(), ChainCorner::convex);
   depths_.resize(vertices_.size(), 0.0);
-  pieces_.push_back({std::move(piece), static_cast<Index>(outlines_.size()), 0});
+  pieces_.push_back({std::move(piece), {}, static_cast<Index>(outlines_.size()), 0});
   finish(outline);
 }
 
@@ -177,7 +176,7 @@ void GroundPieces::add_chain(const std::vector<GroundPiece>& faces, std::size_t 
                  out = direction(face.points[1], face.points[2]);
     const bool is_flat = !face.tail_is_free && corner_turn(in, out) == CornerTurn::flat;
     corners_.push_back(is_flat ? ChainCorner::flat : ChainCorner::convex);
-    pieces_.push_back({face, static_cast<Index>(outlines_.size()), static_cast<Index>(i)});
+    pieces_.push_back({face, face_of(face), static_cast<Index>(outlines_.size()), static_cast<Index>(i)});
   }
   if (!outline.is_closed) {
     corners_[outline.vertices.begin] =
@@ -219,18 +218,17 @@ Box<2> GroundPieces::box(Index piece) const {
   return box_around(corners, of.radius);
 }
 
+PlacedOutline GroundPieces::Piece::placed() const {
+  if (at.form == Form::face) return PlacedOutline(face);
+  const ConvexOutline set{at.points, at.radius};
+  return at.form == Form::hollow ? PlacedOutline::outside_of(set) : PlacedOutline(set);
+}
+
 int GroundPieces::find(Index piece, const ConvexOutline& a, double margin,
                        std::array<GapPoint, 2>& out) const {
   const Piece& of = pieces_[piece];
-  switch (of.at.form) {
-    case Form::hollow:
-      return find_gaps_inside_circle(a, of.at.points[0], of.at.radius, margin, out);
-    case Form::solid:
-      return find_gaps(a, {of.at.points, of.at.radius}, margin, out);
-    case Form::face:
-      break;
-  }
-  const int count = find_face_gaps(a, face_of(of.at), margin, out);
+  const int count = find_gaps(PlacedOutline(a), of.placed(), margin, out);
+  if (of.at.form != Form::face) return count;
   const Index n = outlines_[of.outline].vertices.size();
   int kept = 0;
   for (int i = 0; i < count; ++i) {
@@ -306,7 +304,7 @@ bool GroundPieces::is_corner(Index vertex) const {
 
 ConvexOutline GroundPieces::view(Index outline) const {
   const GroundOutline& of = outlines_[outline];
-  return {vertices().subspan(of.vertices.begin, of.vertices.size()), of.is_hollow() ? 0.0 : of.radius};
+  return {vertices().subspan(of.vertices.begin, of.vertices.size()), of.radius};
 }
 
 FaceChain GroundPieces::chain(Index outline) const {

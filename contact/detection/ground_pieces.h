@@ -80,7 +80,7 @@ public:
   [[nodiscard]] Index outline_of(const FeatureKey& feature) const;
   /// True if a vertex is a corner that an edge of a body may touch.
   [[nodiscard]] bool is_corner(Index vertex) const;
-  /// An outline as a set; of a chain its vertices, of a circle its centre.
+  /// An outline as a set; of a chain its vertices, of the inside of a circle that circle.
   [[nodiscard]] ConvexOutline view(Index outline) const;
   /// A chain.
   [[nodiscard]] FaceChain chain(Index outline) const;
@@ -94,9 +94,12 @@ public:
 
 private:
   struct Piece {
-    GroundPiece at;  // placed
+    GroundPiece at;   // placed
+    GroundFace face;  // of a face
     Index outline;
     Index edge;  // its number in the outline: of a face
+
+    [[nodiscard]] PlacedOutline placed() const;
   };
   void add_solid(GroundPiece piece, Index shape, double surface_speed);
   void add_chains(std::vector<GroundPiece>& faces, const GroundOutline& all);

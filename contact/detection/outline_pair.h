@@ -8,6 +8,7 @@
 #include <carom/contact/detection/face_chain.h>
 #include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_point.h>
+#include <carom/contact/detection/placed_outline.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/ground_shape_kind.h>
 #include <carom/core/layout.h>
@@ -88,8 +89,13 @@ struct OutlinePair {
   [[nodiscard]] Vec<2> vertex_at_outline() const {
     return outline_frame.inside(vertex_frame.outside(vertex));
   }
+  /// The outline as the narrow phase sees it.
+  [[nodiscard]] PlacedOutline touched() const {
+    if (is_hollow) return PlacedOutline::outside_of(outline);
+    return chain ? PlacedOutline(*chain) : PlacedOutline(outline);
+  }
   /// True if neither side is rounded.
-  [[nodiscard]] bool is_sharp() const { return !is_hollow && outline.radius + around.radius == 0.0; }
+  [[nodiscard]] bool is_sharp() const { return outline.radius + around.radius == 0.0; }
 };
 
 /// Two corners that are near each other, in space.

@@ -1,29 +1,30 @@
 // Problem: the contact of a vertex and an outline, whosever they are.
 
 #include <carom/contact/detection/feature_margin.h>
-#include <carom/contact/detection/gap_convex.h>
-#include <carom/contact/detection/gap_inside_circle.h>
+#include <carom/contact/detection/narrow_phase.h>
 #include <carom/contact/detection/pair_sides.h>
-
-#include <array>
-#include <limits>
 
 namespace carom {
 
 namespace {
 
 /// The gap at the nearest feature, in the frame of the outline.
-GapPoint nearest_gap(const PairSides& sides, const ConvexOutline& point) {
+GapPoint gap_at_nearest(const PairSides& sides, const ConvexOutline& point) {
   const OutlinePair& at = sides.at;
-  if (!at.chain) {
-    std::array<GapPoint, 2> found;
-    static_cast<void>(find_gaps(point, at.outline, std::numeric_limits<double>::infinity(), found));
-    const bool is_near = found[0].gap <= at.lengths.corner_follows();
-    if (!at.is_sharp() || !(is_near || FeatureRegions::is_flat(at.outline))) return found[0];
+  GapPoint gap;
+  Index feature = none;
+  if (!at.chain || !at.is_sharp()) {
+    gap = nearest_gap(PlacedOutline(point), at.touched());
+    feature = gap.feature_b;
   }
-  const FeatureRegions regions(at);
-  const Index feature = regions.nearest();
-  GapPoint gap = regions.gap(point, feature);
+  const auto may_be_another = [&] {
+    return at.chain || gap.gap <= at.lengths.corner_follows() || FeatureRegions::is_flat(at.outline);
+  };
+  if (at.is_sharp() && may_be_another()) {
+    const FeatureRegions regions(at);
+    feature = regions.nearest();
+    gap = regions.gap(point, feature);
+  }
   if (sides.pieces == nullptr) return gap;
   const double height = gap.gap + point.radius;
   if (sides.pieces->is_out_behind(sides.chain, feature, height, point.vertices[0])) {
@@ -44,11 +45,8 @@ GapPoint gap_of(const PairSides& sides, Index feature) {
   const OutlinePair& at = sides.at;
   const Vec<2> vertex = at.vertex_at_outline();
   const ConvexOutline point{{&vertex, 1}, at.around.radius};
-  if (at.is_hollow) {
-    const double radius = -sides.of_outline.radius;
-    return in_space(at.outline_frame, gap_inside_circle(point, 0, at.outline.vertices[0], radius));
-  }
-  const GapPoint gap = feature == none ? nearest_gap(sides, point) : FeatureRegions(at).gap(point, feature);
+  const bool is_any = feature == none || at.is_hollow;  // of which there is but one feature
+  const GapPoint gap = is_any ? gap_at_nearest(sides, point) : FeatureRegions(at).gap(point, feature);
   return in_space(at.outline_frame, gap);
 }
 

@@ -1,6 +1,7 @@
 // The narrow phase of convex outlines against the same by another way, over random pairs.
 
-#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/gap_features.h>
+#include <carom/contact/detection/narrow_phase.h>
 
 #include "tests/contact/detection/convex_reference.h"
 #include "tests/shares.h"
@@ -156,7 +157,7 @@ TEST(GapConvexRandom, TrackedGapIsTheOneFound) {
     const int count = find_gaps(a.view(), b.view(), far, found);
     for (int k = 0; k < count; ++k) {
       const GapPoint& at = found[static_cast<std::size_t>(k)];
-      Gaps again{tracked_gap(a.view(), at.feature_a, b.view(), at.feature_b).swapped(), {}};
+      Gaps again{gap_of_features(a.view(), at.feature_a, b.view(), at.feature_b).swapped(), {}};
       expect_same_swapped({at, {}}, again, 1);
     }
   }

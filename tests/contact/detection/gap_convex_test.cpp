@@ -1,6 +1,7 @@
 // The narrow phase of convex outlines where the answer is known: edge on edge, and what is degenerate.
 
-#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/gap_features.h>
+#include <carom/contact/detection/narrow_phase.h>
 
 #include "tests/contact/detection/convex_reference.h"
 
@@ -259,7 +260,7 @@ TEST(GapConvex, EdgesWithoutLengthAreLeftOut) {
 TEST(GapConvex, TrackedGapGoesOnBeyondTheEdge) {
   const OwnedOutline below = box(0, 0, 1, 1);
   const auto gap_of = [&](double x, double y, Index feature) {
-    return tracked_gap(disc(x, y, 0.5).view(), 0, below.view(), feature);
+    return gap_of_features(disc(x, y, 0.5).view(), 0, below.view(), feature);
   };
   EXPECT_EQ(gap_of(0.75, 2, 6).gap, 0.5);
   EXPECT_EQ(gap_of(0.75, 2, 6).within, 0.25);
@@ -269,8 +270,8 @@ TEST(GapConvex, TrackedGapGoesOnBeyondTheEdge) {
   EXPECT_EQ(gap_of(4, 5, 2).gap, 4.5);
   EXPECT_EQ(gap_of(4, 5, 2).within, 3.0);
   EXPECT_EQ(gap_of(0.25, 5, 2).within, -0.75);
-  EXPECT_EQ(tracked_gap(below.view(), 6, disc(0.75, 2, 0.5).view(), 0).kind, GapKind::edge_of_a);
-  EXPECT_EQ(tracked_gap(below.view(), 6, disc(0.75, 2, 0.5).view(), 0).normal, Vec<2>(0, -1));
+  EXPECT_EQ(gap_of_features(below.view(), 6, disc(0.75, 2, 0.5).view(), 0).kind, GapKind::edge_of_a);
+  EXPECT_EQ(gap_of_features(below.view(), 6, disc(0.75, 2, 0.5).view(), 0).normal, Vec<2>(0, -1));
 }
 
 // A corner that cannot be told from none: rounding chooses before which of its edges a point stands that has

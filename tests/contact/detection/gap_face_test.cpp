@@ -1,7 +1,7 @@
 // Faces of polylines on ground: they are the ground that they are part of, and nothing snags where they join.
 
-#include <carom/contact/detection/gap_convex.h>
 #include <carom/contact/detection/gap_face.h>
+#include <carom/contact/detection/narrow_phase.h>
 
 #include "tests/contact/detection/convex_reference.h"
 
@@ -43,7 +43,7 @@ std::vector<FaceContact> find(const OwnedOutline& a, const std::vector<GroundFac
   std::vector<FaceContact> out;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     Gaps found;
-    const int count = find_face_gaps(a.view(), faces[i], margin, found);
+    const int count = find_gaps(PlacedOutline(a.view()), PlacedOutline(faces[i]), margin, found);
     for (int k = 0; k < count; ++k) out.push_back({i, found[static_cast<std::size_t>(k)]});
   }
   return out;

@@ -1,11 +1,10 @@
 // Shapes on ground that outlines touch: their pieces, where they move, and the rows of contacts with them.
 
 #include <carom/bodies/rigid_body.h>
-#include <carom/contact/detection/gap_convex.h>
-#include <carom/contact/detection/gap_inside_circle.h>
 #include <carom/contact/detection/ground_parts.h>
 #include <carom/contact/detection/ground_pieces.h>
 #include <carom/contact/detection/half_space.h>
+#include <carom/contact/detection/narrow_phase.h>
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_rows.h>
 #include <carom/core/constraint_set.h>
@@ -35,8 +34,9 @@ using Gaps = std::array<GapPoint, 2>;
 GapPoint tracked(const GroundPieces& pieces, Index outline, const ConvexOutline& a, Index feature_a,
                  Index feature_b) {
   const GroundOutline& of = pieces.outlines()[outline];
-  if (of.is_hollow()) return gap_inside_circle(a, feature_a, pieces.vertices()[of.vertices.begin], of.radius);
-  return tracked_gap(a, feature_a, pieces.view(outline), feature_b);
+  const ConvexOutline view = pieces.view(outline);
+  const PlacedOutline b = of.is_hollow() ? PlacedOutline::outside_of(view) : PlacedOutline(view);
+  return follow_gap(PlacedOutline(a), feature_a, b, feature_b);
 }
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();

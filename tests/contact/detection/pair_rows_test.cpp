@@ -1,6 +1,7 @@
 // Rows of contacts between convex outlines: they are the rates of the gap, and drift is theirs.
 
-#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/gap_features.h>
+#include <carom/contact/detection/narrow_phase.h>
 #include <carom/contact/detection/pair_rows.h>
 #include <carom/core/constraint_set.h>
 
@@ -56,7 +57,7 @@ struct MovingPair {
     return outline.moved(at[2], {at[0], at[1]});
   }
   GapPoint gap_at(double time) const {
-    return tracked_gap(a_at(time).view(), feature_a, b_at(time).view(), feature_b);
+    return gap_of_features(a_at(time).view(), feature_a, b_at(time).view(), feature_b);
   }
   SingleConstraint rows_at(double time) const {
     const auto now = q_at(time);
