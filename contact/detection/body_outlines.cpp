@@ -1,3 +1,4 @@
+#include <carom/contact/detection/body_materials.h>
 #include <carom/contact/detection/body_outlines.h>
 #include <carom/contact/detection/body_seams.h>
 #include <carom/core/described_sets.h>
@@ -6,21 +7,13 @@
 
 namespace carom {
 
-BodyOutlines::BodyOutlines(const Assembly& assembly) {
+namespace {
+
+/// Outlines of all shapes, as these describe them. \param materials body_materials()
+std::vector<DescribedOutline> outlines_of_shapes(const Assembly& assembly,
+                                                 const std::vector<MaterialId>& materials) {
   const Layout& layout = *assembly.layout();
   const System& system = assembly.system();
-  for (const auto& entry : system.body_kinds().entries()) {
-    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
-      if (!entry.kind->has_contact_point(slot)) continue;
-      const Index serial = entry.serials[slot];
-      const Vec<2> centre = Vec<2>::Zero();
-      BodyOutline of_body;
-      of_body.body = layout.index(BodyId{serial, system.token()});
-      of_body.filter = entry.kind->filter(slot);
-      of_body.key = {FeatureKey::Owner::body, serial, 0};
-      add(of_body, {&centre, 1}, entry.kind->material(slot));
-    }
-  }
   std::vector<Outline> outlines;
   std::vector<RoundedPoint> points;
   std::vector<DescribedOutline> described;
@@ -34,22 +27,47 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
     points.clear();
     kind.rounded_points(place.slot, points);
     check_same_set(check, points, outlines);
+    const Index material = number_of(kind.material(place.slot), materials);
     for (const Outline& outline : outlines) {
       BodyOutline of_body;
       of_body.body = layout.index(kind.body(place.slot));
       of_body.key = {FeatureKey::Owner::shape, serial, 0};
       of_body.filter = kind.filter(place.slot);
+      of_body.material = material;
       of_body.radius = outline.radius;
-      described.push_back({of_body, outline.vertices, kind.material(place.slot)});
+      described.push_back({of_body, outline.vertices});
     }
   }
+  return described;
+}
+
+}  // namespace
+
+BodyOutlines::BodyOutlines(const Assembly& assembly) {
+  const Layout& layout = *assembly.layout();
+  const System& system = assembly.system();
+  const std::vector<MaterialId> materials = body_materials(system);
+  for (const auto& entry : system.body_kinds().entries()) {
+    for (Index slot = 0; slot < entry.serials.size(); ++slot) {
+      if (!entry.kind->has_contact_point(slot)) continue;
+      const Index serial = entry.serials[slot];
+      const Vec<2> centre = Vec<2>::Zero();
+      BodyOutline of_body;
+      of_body.body = layout.index(BodyId{serial, system.token()});
+      of_body.filter = entry.kind->filter(slot);
+      of_body.key = {FeatureKey::Owner::body, serial, 0};
+      of_body.material = number_of(entry.kind->material(slot), materials);
+      add(of_body, {&centre, 1});
+    }
+  }
+  std::vector<DescribedOutline> described = outlines_of_shapes(assembly, materials);
   draw_seams(assembly, described);
   Index feature = 0;
   for (std::size_t i = 0; i < described.size(); ++i) {
     BodyOutline& of_body = described[i].outline;
     if (i == 0 || of_body.key.serial != described[i - 1].outline.key.serial) feature = 0;
     of_body.key.feature = feature;
-    add(of_body, described[i].vertices, described[i].material);
+    add(of_body, described[i].vertices);
     feature += static_cast<Index>(described[i].vertices.size()) + 1;
   }
   std::stable_sort(list_.begin(), list_.end(),
@@ -67,8 +85,7 @@ BodyOutlines::BodyOutlines(const Assembly& assembly) {
   }
 }
 
-void BodyOutlines::add(BodyOutline outline, std::span<const Vec<2>> vertices, MaterialId material) {
-  outline.material = number_of(material);
+void BodyOutlines::add(BodyOutline outline, std::span<const Vec<2>> vertices) {
   outline.vertices.begin = static_cast<Index>(vertices_.size());
   for (const Vec<2>& vertex : vertices) {
     vertices_.push_back(vertex);
@@ -76,13 +93,6 @@ void BodyOutlines::add(BodyOutline outline, std::span<const Vec<2>> vertices, Ma
   }
   outline.vertices.end = static_cast<Index>(vertices_.size());
   list_.push_back(outline);
-}
-
-Index BodyOutlines::number_of(MaterialId material) {
-  const auto found = std::find(materials_.begin(), materials_.end(), material);
-  const auto number = static_cast<Index>(found - materials_.begin());
-  if (found == materials_.end()) materials_.push_back(material);
-  return number;
 }
 
 bool BodyOutlines::any_off_centre() const {

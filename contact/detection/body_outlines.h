@@ -21,7 +21,7 @@ namespace carom {
 /// A convex outline fixed to a body: a point, a disc, a capsule or a polygon.
 struct BodyOutline : OutlineFeatures {
   Index body = none;      ///< in the order of assembly
-  Index material = none;  ///< number in BodyOutlines::materials()
+  Index material = none;  ///< number among body_materials()
   ContactFilter filter;   ///< what it may touch
   double radius = 0.0;    ///< rounding radius [m]
   double reach = 0.0;     ///< radius of a circle around the centre of mass that holds it [m]
@@ -50,8 +50,6 @@ public:
   [[nodiscard]] ConvexOutline described(const BodyOutline& outline) const {
     return {vertices().subspan(outline.vertices.begin, outline.vertices.size()), outline.radius};
   }
-  /// Materials of outlines; one of them may be no material.
-  [[nodiscard]] const std::vector<MaterialId>& materials() const { return materials_; }
   /// True if a vertex stands off the centre of mass.
   [[nodiscard]] bool any_off_centre() const;
   /// True if those of lesser keys come first.
@@ -65,13 +63,11 @@ public:
              const Evaluation& evaluation, Vec<2>* out) const;
 
 private:
-  void add(BodyOutline outline, std::span<const Vec<2>> vertices, MaterialId material);
-  [[nodiscard]] Index number_of(MaterialId material);
+  void add(BodyOutline outline, std::span<const Vec<2>> vertices);
 
   std::vector<BodyOutline> list_;
   std::vector<Vec<2>> vertices_;
   std::vector<Index> outline_of_;  // by vertex
-  std::vector<MaterialId> materials_;
   // First outlines of bodies that touch at their centres, and of shapes, by serial number; none: it has none.
   std::vector<Index> of_body_, of_shape_;
   bool in_order_of_keys_ = true;

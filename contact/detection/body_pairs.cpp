@@ -4,17 +4,8 @@
 
 namespace carom {
 
-BodyPairs::BodyPairs(const Assembly& assembly, const BodyOutlines& outlines)
-    : outlines_(&outlines),
-      filter_(assembly),
-      materials_(outlines.materials().size()),
-      of_(assembly.layout()->bodies().size()) {
-  for (const MaterialId a : outlines.materials()) {
-    for (const MaterialId b : outlines.materials()) {
-      has_law_.push_back(static_cast<char>(assembly.system().law(a, b).has_value()));
-    }
-  }
-  const std::vector<BodyOutline>& list = outlines.list();
+BodyPairs::BodyPairs(const Outlines& outlines) : outlines_(&outlines), of_(outlines.slots().size()) {
+  const std::vector<BodyOutline>& list = outlines.of_bodies().list();
   for (Index i = 0; i < list.size(); ++i) {
     Range& range = of_[list[i].body];
     if (range.empty()) range.begin = i;
@@ -26,22 +17,24 @@ void BodyPairs::append(std::span<const Index> bodies, std::vector<ContactPair>& 
   for (const Index body : bodies) {
     for (Index i = of_[body].begin; i < of_[body].end; ++i) {
       for (const Index other : bodies) {
-        for (Index j = of_[other].begin; j < of_[other].end; ++j) append(outlines_->list()[i], j, out);
+        for (Index j = of_[other].begin; j < of_[other].end; ++j) append(i, j, out);
       }
     }
   }
 }
 
 /// Appends the pairs of the vertices of an outline and another one.
-void BodyPairs::append(const BodyOutline& a, Index of_b, std::vector<ContactPair>& out) const {
-  const BodyOutline& b = outlines_->list()[of_b];
-  if (!may_touch(a, b)) return;
+void BodyPairs::append(Index of_a, Index of_b, std::vector<ContactPair>& out) const {
+  const std::vector<BodyOutline>& list = outlines_->of_bodies().list();
+  const BodyOutline &a = list[of_a], &b = list[of_b];
+  if (!outlines_->laws().may_touch(a, b)) return;
   // Of two round ends one is enough; a point touches both edges at a sharp corner.
   if (a.vertices.size() == 1 && b.vertices.size() == 1 && b.key < a.key) return;
   const bool point_at_corners = b.is_point() && a.radius == 0.0;
   if (b.vertices.size() == 1 && a.vertices.size() > 1 && !point_at_corners) return;
+  const Index law = outlines_->number_of_law(of_a, of_b);
   for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
-    out.push_back({.body = a.body, .feature = vertex, .other = b.body, .outline = of_b});
+    out.push_back({.body = a.body, .feature = vertex, .law = law, .other = b.body, .outline = of_b});
   }
 }
 

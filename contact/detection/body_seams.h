@@ -18,7 +18,6 @@ namespace carom {
 struct DescribedOutline {
   BodyOutline outline;             ///< all but its place among others
   std::vector<Vec<2>> vertices{};  ///< in the frame of the body, from the centre of mass [m]
-  MaterialId material{};           ///< may be no material
 };
 
 /// Adds corners to sharp polygons where neighbours cover their sides. Bodies that a joint binds are taken

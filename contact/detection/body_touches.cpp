@@ -141,7 +141,7 @@ void write_rows(const Outlines& outlines, const Touch& touch, const BodyContactS
                 const StateView& state, Constraint& out) {
   out.start_contact();
   out.key = outlines.key_of(touch.a, touch.b, touch.gap);
-  out.law = *outlines.law(touch.a, touch.b);
+  out.law = outlines.law(touch.a, touch.b);
   out.friction = out.law.friction;
   fill_rows(memory.sides[touch.a], memory.sides[touch.b], touch.gap, out);
   if (out.law.has_static_friction()) out.friction = out.law.friction_at(out.sliding_speed(state.v));

@@ -14,7 +14,7 @@ struct ContactPair {
   Index body = none;          ///< in the order of assembly; of a joint the first one that it binds
   Index feature = none;       ///< vertex of Outlines where there is an outline; else a point of
                               ///< BodyFeatures, `none` where the body touches at its centre, and of joints
-  Index material = none;      ///< of such a point or centre; else `none`
+  Index law = none;           ///< number in ContactLaws; `none` of joints
   Index ground_shape = none;  ///< `none` of joints, and where two bodies touch
   Index joint_row = none;     ///< limit of a joint or friction in one; else `none`
   Index other = none;         ///< the second body, where two bodies touch, else `none`

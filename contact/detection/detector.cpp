@@ -54,7 +54,7 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
   out.start(step, slack);
   const bool no_slack = out.slack() == 0.0;
   const Layout& layout = *assembly_->layout();
-  const GroundShapes& shapes = points_.shapes();
+  const GroundShapes& on_ground = shapes();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ConstraintKey& key = contacts[i].first;
     const LastingContacts::Pressed pressed = pressed_of(contacts, i);
@@ -65,15 +65,15 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
     }
     // A centre of mass has no arm: but for slack only a shape that turns, or is curved, can open such a
     // contact.
-    if (no_slack && !shapes.any_moves() && !outlines_.ground_touches()) continue;
-    const Index shape = shapes.find(key.b.serial);
-    if (shape != none && shapes.has_pieces(shape)) {
+    if (no_slack && !on_ground.any_moves() && !outlines_.ground_touches()) continue;
+    const Index shape = on_ground.find(key.b.serial);
+    if (shape != none && on_ground.has_pieces(shape)) {
       out.add(key, pressed);
       continue;
     }
     const BodyId body{key.a.serial, layout.token()};
     if (shape == none || !layout.contains(body)) continue;
-    if (no_slack && !shapes.moves(shape)) continue;
+    if (no_slack && !on_ground.moves(shape)) continue;
     out.add(key, pressed, layout.index(body));
   }
   out.finish();
@@ -119,7 +119,7 @@ void Detector::contact(const ContactPair& pair, const StateView& state, const Ev
   }
   if (pair.joint_row != none) return joints_.constraint(pair.joint_row, state, evaluation, out);
   if (pair.has_outline()) return write_contact(outlines_.sides(pair, state, evaluation, places), state, out);
-  points_.contact(pair, state, evaluation, points_.shapes().motion(pair.ground_shape, places), out);
+  points_.contact(pair, state, evaluation, shapes().motion(pair.ground_shape, places), out);
 }
 
 std::string Detector::name(const ConstraintKey& key) const { return contact_name(assembly_->system(), key); }

@@ -14,7 +14,6 @@
 #include <carom/contact/detection/point_contacts.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint_set.h>
-#include <carom/core/discontinuity.h>
 #include <carom/core/export.h>
 
 #include <optional>
@@ -32,27 +31,19 @@ public:
   /// \param lengths to which features of outlines are told apart
   explicit Detector(const Assembly& assembly, const FeatureLengths& lengths = {})
       : assembly_(&assembly),
-        points_(assembly),
         outlines_(assembly, lengths),
+        points_(assembly, outlines_.shapes(), outlines_.laws()),
         on_ground_(outlines_),
         joints_(assembly) {}
+  Detector(const Detector&) = delete;
+  Detector& operator=(const Detector&) = delete;
 
   /// True if a shape on ground moves.
-  [[nodiscard]] bool has_moving_ground() const { return points_.shapes().any_moves(); }
+  [[nodiscard]] bool has_moving_ground() const { return shapes().any_moves(); }
   /// As GroundShapes::place().
-  void place(double time, GroundPlaces& places) const { points_.shapes().place(time, places); }
-  /// As GroundShapes::demand_continuous().
-  void demand_continuous(const GroundPlaces& before, const GroundPlaces& after) const {
-    points_.shapes().demand_continuous(before, after);
-  }
-  /// As GroundShapes::list_jumps().
-  void list_jumps(double from, double to, std::vector<GroundJump>& out) const {
-    points_.shapes().list_jumps(from, to, out);
-  }
-  /// As GroundShapes::discontinuities().
-  [[nodiscard]] std::vector<Discontinuity> discontinuities() const {
-    return points_.shapes().discontinuities();
-  }
+  void place(double time, GroundPlaces& places) const { shapes().place(time, places); }
+  /// The shapes on ground.
+  [[nodiscard]] const GroundShapes& shapes() const { return outlines_.shapes(); }
 
   /// Appends the contacts of one component whose gap is <= `margin` [m]: with shapes on ground without
   /// pieces, ordered by body, then feature, then shape; with pieces, ordered by body; then the limits of
@@ -105,10 +96,18 @@ public:
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundPlaces& places, Constraint& out) const;
 
+  /// Law of a pair, of whatever sides; of the rolling resistance of a contact that of the contact. Joints
+  /// have none.
+  [[nodiscard]] const Surface& law(const ContactPair& pair) const { return outlines_.laws()[pair.law]; }
+  /// Facts of the laws of all pairs that may touch.
+  [[nodiscard]] LawFacts law_facts() const {
+    LawFacts all = points_.law_facts();
+    all.add(outlines_.laws().facts_of_bodies());
+    return all;
+  }
   /// True if some surface takes more to slip than to slide, or there is friction in joints.
   [[nodiscard]] bool has_static_friction() const {
-    return points_.law_facts().static_friction || outlines_.laws().facts_of_bodies().static_friction ||
-           joints_.has_friction();
+    return law_facts().static_friction || joints_.has_friction();
   }
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass, or a joint has
   /// limits or friction.
@@ -122,28 +121,24 @@ public:
 
 private:
   const Assembly* assembly_;
-  PointContacts points_;
   Outlines outlines_;
+  PointContacts points_;  // of shapes and laws of the outlines
   GroundTouches on_ground_;
   JointRows joints_;
 };
 
 /// True if some law of impact is not Newton's.
 [[nodiscard]] inline bool has_other_impact_law(const Detector& detector) {
-  return detector.points().law_facts().other_impact_law ||
-         detector.outlines().laws().facts_of_bodies().other_impact_law;
+  return detector.law_facts().other_impact_law;
 }
 /// True if some law has rolling resistance.
 [[nodiscard]] inline bool resists_rolling(const Detector& detector) {
-  return detector.points().law_facts().rolling_resistance ||
-         detector.outlines().laws().facts_of_bodies().rolling_resistance;
+  return detector.law_facts().rolling_resistance;
 }
 /// True if the law of a pair of shapes has rolling resistance. False of the pair that stands for that
 /// resistance, and of joints.
 [[nodiscard]] inline bool resists_rolling(const Detector& detector, const ContactPair& pair) {
-  if (pair.joint_row != none || pair.rolling) return false;
-  return (pair.outline != none ? detector.outlines().law(pair) : detector.points().law(pair))
-      .resists_rolling();
+  return pair.joint_row == none && !pair.rolling && detector.law(pair).resists_rolling();
 }
 /// True if all that can touch are bodies and ground at rest, and PointContacts::centre_rows() tell what may.
 [[nodiscard]] inline bool centres_tell(const Detector& detector) {
@@ -152,12 +147,12 @@ private:
 }
 /// True if the shape on ground of a pair moves.
 [[nodiscard]] inline bool moves(const Detector& detector, const ContactPair& pair) {
-  return pair.ground_shape != none && detector.outlines().shapes().moves(pair.ground_shape);
+  return pair.ground_shape != none && detector.shapes().moves(pair.ground_shape);
 }
 /// Motion of the shape on ground of a pair; null if there is none or it is at rest.
 [[nodiscard]] inline const GroundMotion* motion_of(const Detector& detector, const ContactPair& pair,
                                                    const GroundPlaces& places) {
-  return moves(detector, pair) ? detector.outlines().shapes().motion(pair.ground_shape, places) : nullptr;
+  return moves(detector, pair) ? detector.shapes().motion(pair.ground_shape, places) : nullptr;
 }
 /// Brings rows, gap and drift of a contact of a pair to a state, as long as its vertex stays with one feature
 /// of its outline (ConvexOutline), whichever is the nearest: a smooth function of the motion. Key and law

@@ -205,14 +205,16 @@ void append_pairs(const Outlines& outlines, Index outline, Index on_ground, std:
   const BodyOutline& a = outlines.of_bodies().list()[outline];
   const GroundOutline& b = pieces.outlines()[on_ground];
   if (!outlines.may_touch(a, b)) return;
-  const ContactPair pair{.body = a.body, .ground_shape = b.shape};
+  const Index number = outlines.of_ground(on_ground);
+  const ContactPair pair{
+      .body = a.body, .law = outlines.number_of_law(outline, number), .ground_shape = b.shape};
   // Of two round ends one is enough.
   const bool is_peg = b.form == GroundPiece::Form::solid && b.vertices.size() == 1;
   for (Index vertex = a.vertices.begin; vertex < a.vertices.end; ++vertex) {
     if (is_peg && a.vertices.size() > 1) break;
     out.push_back(pair);
     out.back().feature = vertex;
-    out.back().outline = outlines.of_ground(on_ground);
+    out.back().outline = number;
   }
   const bool point_at_corners = a.is_point() && b.radius == 0.0 && !is_peg;
   if ((a.vertices.size() == 1 && !point_at_corners) || b.is_hollow()) return;

@@ -13,6 +13,12 @@ struct LawFacts {
   bool other_impact_law = false;    ///< a law of impact that is not Newton's
   bool rolling_resistance = false;  ///< rolling resistance
 
+  /// Takes in the facts of other laws.
+  void add(const LawFacts& other) {
+    static_friction = static_friction || other.static_friction;
+    other_impact_law = other_impact_law || other.other_impact_law;
+    rolling_resistance = rolling_resistance || other.rolling_resistance;
+  }
   /// Takes in a law.
   void add(const Surface& law) {
     static_friction = static_friction || law.has_static_friction();

@@ -91,7 +91,7 @@ PairSides Outlines::sides(const ContactPair& pair, const StateView& state, const
                 .of_outline = side(pair.outline, state, places),
                 .vertex = with_vertex.vertex(vertex),
                 .surface = whole.surface(),
-                .law = &law(pair),
+                .law = &laws_[pair.law],
                 .vertex_is_first = !(whole.key < with_vertex.key)};
   if (out.at.chain) {
     out.pieces = &on_ground();

@@ -16,15 +16,10 @@ Outlines::Outlines(const Assembly& assembly, const FeatureLengths& lengths, bool
   if (ground_touches()) covering_ = CoveringGround(shapes(), on_ground());
 }
 
-const Surface* Outlines::law(Index a, Index b) const {
+Index Outlines::number_of_law(Index a, Index b) const {
   const std::vector<BodyOutline>& list = of_bodies().list();
-  if (!is_on_ground(b)) return laws_.between(list[a], list[b]);
-  return laws_.with_ground(list[a], on_ground().outlines()[on_ground(b)].shape);
-}
-
-const Surface& Outlines::law(const ContactPair& pair) const {
-  const Index of_vertex = outline_of(pair.feature);
-  return *(is_on_ground(of_vertex) ? law(pair.outline, of_vertex) : law(of_vertex, pair.outline));
+  if (!is_on_ground(b)) return laws_.between(list[a].material, list[b].material);
+  return laws_.with_ground(list[a].material, on_ground().outlines()[on_ground(b)].shape);
 }
 
 ConstraintKey Outlines::key_of(Index a, Index b, const GapPoint& gap) const {
@@ -46,6 +41,7 @@ std::optional<ContactPair> Outlines::pair_of(const ConstraintKey& key) const {
   const Index of_vertex = of_a ? a : b, whole = of_a ? b : a;
   ContactPair pair{.body = of_bodies().list()[a].body, .outline = whole};
   pair.feature = features(of_vertex).place(of_a ? key.a : key.b);
+  pair.law = number_of_law(a, b);
   if (with_ground) {
     pair.ground_shape = on_ground().outlines()[ground].shape;
     if (!of_a) pair.feature = of_ground_vertex(pair.feature);
@@ -58,7 +54,7 @@ std::optional<ContactPair> Outlines::pair_of(const ConstraintKey& key) const {
 
 void Outlines::write(const Touch& touch, const ContactQuery& query, Constraint& out) const {
   out.key = key_of(touch.a, touch.b, touch.gap);
-  out.law = *law(touch.a, touch.b);
+  out.law = law(touch.a, touch.b);
   out.friction = out.law.friction;
   out.allowed_approach = touch.allowed_approach;
   const PairSide a = side(touch.a, query.state, query.places), b = side(touch.b, query.state, query.places);

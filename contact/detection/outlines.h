@@ -4,12 +4,12 @@
 /// All outlines of a model: those of bodies, which these touch each other with, and those on ground, each in
 /// its own frame. Which of them may touch, by which law, and what the contact of two of them is.
 
+#include <carom/contact/detection/contact_laws.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/covering_ground.h>
 #include <carom/contact/detection/feature_region.h>
 #include <carom/contact/detection/gap_point.h>
-#include <carom/contact/detection/outline_laws.h>
 #include <carom/contact/detection/outline_list.h>
 #include <carom/contact/detection/outline_pair.h>
 #include <carom/contact/detection/pair_sides.h>
@@ -34,20 +34,21 @@ struct Touch {
 /// All outlines of a model, which of them may touch, by which law, and what the contact of two of them is.
 class CAROM_API Outlines : public OutlineList {
 public:
-  /// Throws ModelError where a body's polygon is not convex. Laws with shapes on ground must be known to be
-  /// there (GroundLaws). Outlines of bodies are listed where these can touch each other or a piece of the
-  /// ground. \param assembly outlives it \param lengths to which features are told apart
+  /// Throws ModelError where a body's polygon is not convex. Outlines of bodies are listed where these can
+  /// touch each other or a piece of the ground. \param assembly outlives it \param lengths to which features
+  /// are told apart
   explicit Outlines(const Assembly& assembly, const FeatureLengths& lengths = {});
 
-  /// Laws between outlines of bodies and with shapes on ground.
-  [[nodiscard]] const OutlineLaws& laws() const { return laws_; }
+  /// Laws between bodies, and between these and all shapes on ground.
+  [[nodiscard]] const ContactLaws& laws() const { return laws_; }
   /// True if bodies may touch each other.
   [[nodiscard]] bool bodies_touch() const { return laws_.bodies_touch(); }
 
-  /// Law between two outlines; null: there is none, so that they do not touch. \param a of a body
-  [[nodiscard]] const Surface* law(Index a, Index b) const;
-  /// Law of a pair.
-  [[nodiscard]] const Surface& law(const ContactPair& pair) const;
+  /// Number of the law between two outlines; `none`: there is none, so that they do not touch. \param a of a
+  /// body
+  [[nodiscard]] Index number_of_law(Index a, Index b) const;
+  /// Law between two outlines that may touch. \param a of a body
+  [[nodiscard]] const Surface& law(Index a, Index b) const { return laws_[number_of_law(a, b)]; }
   /// True if an outline of a body and one on ground may touch.
   [[nodiscard]] bool may_touch(const BodyOutline& a, const GroundOutline& b) const {
     return carom::may_touch(a.filter, shapes().filter(b.shape));
@@ -82,7 +83,7 @@ private:
   void cover_by_bodies(OutlinePair& at, const MeetingCorners& corners, const std::array<Index, 2>& of,
                        const StateView& state, const Evaluation& evaluation) const;
 
-  OutlineLaws laws_;
+  ContactLaws laws_;
   CoveringGround covering_;
 };
 

@@ -32,11 +32,12 @@ void for_parts(Range all, Index size, F&& f) {
 
 }  // namespace
 
-PointContacts::PointContacts(const Assembly& assembly)
+PointContacts::PointContacts(const Assembly& assembly, const GroundShapes& shapes, const ContactLaws& laws)
     : assembly_(&assembly),
-      shapes_(assembly.system()),
-      features_(shapes_.empty() ? BodyFeatures() : BodyFeatures(assembly)),
-      laws_(assembly, features_, shapes_),
+      shapes_(&shapes),
+      laws_(&laws),
+      features_(shapes.empty() ? BodyFeatures() : BodyFeatures(assembly)),
+      touched_(assembly, features_, shapes, laws),
       needs_rotations_(features_.any_off_centre()) {}
 
 void PointContacts::find(Range components, const ContactQuery& query, ConstraintSet& out) const {
@@ -71,7 +72,7 @@ bool PointContacts::find_near(Range bodies, const CentreRun& centres, const Cont
   const LastingContacts* const lasting = query.lasting;
   const bool bare = centres.points == none;
   if (lasting != nullptr &&
-      (bare ? lasting->any_centre(bodies) : shapes_.any_moves() || lasting->keeps_pressed())) {
+      (bare ? lasting->any_centre(bodies) : shapes_->any_moves() || lasting->keeps_pressed())) {
     std::fill_n(near.begin(), bodies.size(), all_shapes);
     return true;
   }
@@ -80,15 +81,15 @@ bool PointContacts::find_near(Range bodies, const CentreRun& centres, const Cont
   const double margin = centres.reach(query.margin + (lasting == nullptr ? 0.0 : lasting->slack()));
   const BodySlot slot = assembly_->layout()->bodies()[bodies.begin];
   const PointRow row{query.state.q + slot.q, slot.q_size, bodies.size()};
-  const std::span<const Index> touched = laws_.touched_by(material_of(centres));
+  const std::span<const TouchedShape> touched = touched_.by(material_of(centres));
   std::uint64_t any = 0;
   for (std::size_t place = 0; place < touched.size(); ++place) {
-    const Index shape = touched[place];
+    const Index shape = touched[place].shape;
     // Contacts with curved shapes last beyond the margin where turning explains it.
-    const bool may_be_open = lasting != nullptr && !bare && !shapes_.is_flat(shape);
+    const bool may_be_open = lasting != nullptr && !bare && !shapes_->is_flat(shape);
     std::uint64_t within =
         may_be_open ? all_bodies
-                    : shapes_.points_within(shape, shapes_.motion(shape, query.places), row, margin);
+                    : shapes_->points_within(shape, shapes_->motion(shape, query.places), row, margin);
     any |= within;
     if (within == all_bodies) {  // bodies in a row on a floor: without a loop over bits
       for (Index i = 0; i < bodies.size(); ++i) near[i] |= bit_of(place);
@@ -185,49 +186,51 @@ template <int D>
 void PointContacts::add(const BodySlot& body, const BodyFeature& feature, ShapeBits shapes,
                         const ContactQuery& query, ConstraintSet& out) const {
   const PlacedFeature<D> at = place_feature<D>(body, feature, query.state, query.evaluation);
-  const std::span<const Index> touched = laws_.touched_by(feature.material);
+  const std::span<const TouchedShape> touched = touched_.by(feature.material);
   for (std::size_t place = 0; place < touched.size(); ++place) {
     if ((shapes & bit_of(place)) == 0) continue;
-    const Index shape = touched[place];
-    const GroundMotion* const motion = shapes_.motion(shape, query.places);
-    const Gap gap = shapes_.gap(shape, motion, at.centre.data());
+    const Index shape = touched[place].shape;
+    const GroundMotion* const motion = shapes_->motion(shape, query.places);
+    const Gap gap = shapes_->gap(shape, motion, at.centre.data());
     const double distance = gap.distance - feature.radius;
     const bool touches = !(distance > query.margin);  // no number: that is told where it is used
     if (!touches) {
       if (query.lasting == nullptr) continue;
       double turning = turning_bound(at, query.state, motion, gap.distance);
       if constexpr (D == 2) {
-        if (!shapes_.is_flat(shape)) {
-          turning += std::abs(curvature_drift(at, query.state, shapes_, shape, motion)[0]);
+        if (!shapes_->is_flat(shape)) {
+          turning += std::abs(curvature_drift(at, query.state, *shapes_, shape, motion)[0]);
         }
       }
-      if (!query.lasting->lasts({feature.key, shapes_.key(shape)}, distance, turning)) continue;
+      if (!query.lasting->lasts({feature.key, shapes_->key(shape)}, distance, turning)) continue;
     }
-    if (query.leaves_out && query.leaves_out(feature.body, {feature.key, shapes_.key(shape)})) continue;
-    GroundAtEnd end = query.end_of(shapes_, shape);
-    if (!shapes_.is_flat(shape)) end.step = 0.0;  // where it is touched then is not known
+    if (query.leaves_out && query.leaves_out(feature.body, {feature.key, shapes_->key(shape)})) continue;
+    GroundAtEnd end = query.end_of(*shapes_, shape);
+    if (!shapes_->is_flat(shape)) end.step = 0.0;  // where it is touched then is not known
     Constraint& contact = out.add_contact();
-    fill(at, shape, gap, query.state, motion, end, contact);
+    fill(at, touched[place], gap, query.state, motion, end, contact);
     if (!touches) contact.allowed_approach = distance / query.lasting->step();
   }
 }
 
 template <int D>
-void PointContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
-                         const GroundMotion* motion, const GroundAtEnd& end, Constraint& out) const {
-  if (at.centre.allFinite()) shapes_.demand_numbers(shape, gap, at.centre.data(), state.time);
-  out.key = {at.feature.key, shapes_.key(shape)};
-  out.law = laws_.law(at.feature.material, shape);
+void PointContacts::fill(const PlacedFeature<D>& at, const TouchedShape& touched, const Gap& gap,
+                         const StateView& state, const GroundMotion* motion, const GroundAtEnd& end,
+                         Constraint& out) const {
+  const Index shape = touched.shape;
+  if (at.centre.allFinite()) shapes_->demand_numbers(shape, gap, at.centre.data(), state.time);
+  out.key = {at.feature.key, shapes_->key(shape)};
+  out.law = (*laws_)[touched.law];
   out.friction = out.law.friction;
   fill_rows(at, gap, state, out);
   if constexpr (D == 2) {
     if (motion != nullptr) add_ground_motion(at, state, *motion, end, out);
-    if (!shapes_.is_flat(shape)) {
-      const std::array<double, 2> curved = curvature_drift(at, state, shapes_, shape, motion);
+    if (!shapes_->is_flat(shape)) {
+      const std::array<double, 2> curved = curvature_drift(at, state, *shapes_, shape, motion);
       out.drift[0] += curved[0];
       out.drift[1] += curved[1];
     }
-    if (const double speed = shapes_.surface_speed(shape); speed != 0.0) {
+    if (const double speed = shapes_->surface_speed(shape); speed != 0.0) {
       out.surface_velocity[1] += speed;
       out.surface_velocity_after[1] += speed;
     }
@@ -238,19 +241,19 @@ void PointContacts::fill(const PlacedFeature<D>& at, Index shape, const Gap& gap
 void PointContacts::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                             const GroundMotion* motion, Constraint& out) const {
   const BodySlot body = assembly_->layout()->bodies()[pair.body];
-  const BodyFeature feature = pair.feature == none ? BodyFeature::at_centre(body, pair.body, pair.material)
-                                                   : features_.points()[pair.feature];
+  const BodyFeature feature =
+      pair.feature == none ? BodyFeature::at_centre(body, pair.body, none) : features_.points()[pair.feature];
   out.start_contact();
   in_dimension(*assembly_, [&]<int D>(std::integral_constant<int, D>) {
     const PlacedFeature<D> at = place_feature<D>(body, feature, state, evaluation);
-    const Gap gap = shapes_.gap(pair.ground_shape, motion, at.centre.data());
-    fill(at, pair.ground_shape, gap, state, motion, {}, out);
+    const Gap gap = shapes_->gap(pair.ground_shape, motion, at.centre.data());
+    fill(at, {pair.ground_shape, pair.law}, gap, state, motion, {}, out);
   });
 }
 
 std::size_t PointContacts::count_pairs(Range components) const {
   std::size_t pairs = 0;
-  const auto add = [&](Index points, Index material) { pairs += points * laws_.touched_by(material).size(); };
+  const auto add = [&](Index points, Index material) { pairs += points * touched_.by(material).size(); };
   for_runs(components, [&](const CentreRun& centres) {
     if (centres.points == none) add(centres.bodies.size(), centres.material);
   });
@@ -261,8 +264,8 @@ std::size_t PointContacts::count_pairs(Range components) const {
 
 void PointContacts::append_pairs(Index component, std::vector<ContactPair>& out) const {
   const auto append = [&](Index body, Index feature, Index material) {
-    for (const Index shape : laws_.touched_by(material)) {
-      out.push_back({body, feature, material, shape, none});
+    for (const TouchedShape& touched : touched_.by(material)) {
+      out.push_back({.body = body, .feature = feature, .law = touched.law, .ground_shape = touched.shape});
     }
   };
   const std::vector<BodyFeature>& points = features_.points();

@@ -4,11 +4,12 @@
 /// Contacts of bodies with shapes on ground: all pairs of a rounded point and a shape whose gap is closed.
 
 #include <carom/contact/detection/body_features.h>
+#include <carom/contact/detection/contact_laws.h>
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/contact_rows.h>
-#include <carom/contact/detection/ground_laws.h>
 #include <carom/contact/detection/ground_shapes.h>
+#include <carom/contact/detection/touched_ground.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
@@ -30,16 +31,15 @@ struct CentreRow {
   double reach = 0.0;  ///< no contact has a gap <= 0 whose centre is farther away [m]
 };
 
-/// Features of the bodies of an assembly, shapes on ground, and the laws between them.
+/// Features of the bodies of an assembly, and the shapes on ground without pieces that they may touch.
 class CAROM_API PointContacts {
 public:
-  /// Throws ModelError where a feature and a shape have no contact law. \param assembly outlives it
-  explicit PointContacts(const Assembly& assembly);
+  /// Throws ModelError where a feature and a shape on ground, of whatever kind, have no contact law.
+  /// \param assembly outlives it \param shapes,laws of the assembly, outlive it
+  PointContacts(const Assembly& assembly, const GroundShapes& shapes, const ContactLaws& laws);
 
-  /// The shapes on ground.
-  [[nodiscard]] const GroundShapes& shapes() const { return shapes_; }
-  /// Facts of the laws of all pairs.
-  [[nodiscard]] const LawFacts& law_facts() const { return laws_.facts(); }
+  /// Facts of the laws with all shapes on ground.
+  [[nodiscard]] const LawFacts& law_facts() const { return touched_.facts(); }
   /// True if find() looks at the rotations of bodies.
   [[nodiscard]] bool needs_rotations() const { return needs_rotations_; }
 
@@ -67,10 +67,6 @@ public:
   [[nodiscard]] bool turns(const ContactPair& pair) const {
     return pair.feature != none && features_.points()[pair.feature].centre != std::array<double, 3>{};
   }
-  /// Law of a pair.
-  [[nodiscard]] const Surface& law(const ContactPair& pair) const {
-    return laws_.law(pair.material, pair.ground_shape);
-  }
   /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                const GroundMotion* motion, Constraint& out) const;
@@ -92,7 +88,7 @@ private:
            ConstraintSet& out) const;
   // Writes a contact. \param end the shape at the end of the step
   template <int D>
-  void fill(const PlacedFeature<D>& at, Index shape, const Gap& gap, const StateView& state,
+  void fill(const PlacedFeature<D>& at, const TouchedShape& touched, const Gap& gap, const StateView& state,
             const GroundMotion* motion, const GroundAtEnd& end, Constraint& out) const;
   [[nodiscard]] Index material_of(const CentreRun& centres) const;
   template <class F>
@@ -104,9 +100,10 @@ private:
   bool find_near(Range bodies, const CentreRun& centres, const ContactQuery& query, ShapesOfEach& near) const;
 
   const Assembly* assembly_;
-  GroundShapes shapes_;
+  const GroundShapes* shapes_;
+  const ContactLaws* laws_;
   BodyFeatures features_;
-  GroundLaws laws_;
+  TouchedGround touched_;
   bool needs_rotations_;
 };
 

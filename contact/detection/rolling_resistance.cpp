@@ -54,7 +54,7 @@ void write_rolling_resistance(const Constraint& contact, const GroundMotion* mot
 const GroundMotion* ground_motion_of(const Detector& detector, const Constraint& contact,
                                      const GroundPlaces& places) {
   if (contact.key.b.owner != FeatureKey::Owner::obstacle) return nullptr;
-  const GroundShapes& shapes = detector.outlines().shapes();
+  const GroundShapes& shapes = detector.shapes();
   const Index shape = shapes.find(contact.key.b.serial);
   return shape == none || !shapes.moves(shape) ? nullptr : shapes.motion(shape, places);
 }

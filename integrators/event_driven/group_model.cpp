@@ -158,8 +158,9 @@ GroupModel::GroupModel(const Assembly& assembly_in, const Detector& detector_in,
   loads.needs_rotations = !joints.empty() || !bounds.empty() || detector->needs_rotations();
   for (const Index component : group.components) add_load_traits(*assembly, component, loads);
   if (assembly->layout()->rotation_size() == 0) loads.needs_rotations = false;  // none of particles
-  discontinuities = discontinuities_of(
-      *assembly, group.components, ground_moves ? detector->discontinuities() : std::vector<Discontinuity>{});
+  discontinuities =
+      discontinuities_of(*assembly, group.components,
+                         ground_moves ? detector->shapes().discontinuities() : std::vector<Discontinuity>{});
 }
 
 ElementId GroupModel::find_without_direction(const MotionSample& at, double speed) const {

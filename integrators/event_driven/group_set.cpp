@@ -9,7 +9,7 @@ namespace carom {
 GroupSet::GroupSet(const Assembly& assembly, const Detector& detector, const EventDriven& options,
                    GroupMemory& memory)
     : assembly_(&assembly), detector_(&detector), options_(&options), memory_(&memory) {
-  if (detector.bodies_touch()) pairs_.emplace(assembly, detector.outlines().of_bodies());
+  if (detector.bodies_touch()) pairs_.emplace(detector.outlines());
   const auto count = static_cast<Index>(assembly.components().size());
   alone_.reserve(count);
   of_.resize(count);

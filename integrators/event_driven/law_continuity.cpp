@@ -25,7 +25,7 @@ void LawContinuity::demand_part(double from, double to) {
     if (after_.time() == from) std::swap(before_, after_);
     detector_->place(from, before_);
     detector_->place(to, after_);
-    detector_->demand_continuous(before_, after_);
+    detector_->shapes().demand_continuous(before_, after_);
   } catch (const RunError& error) {
     SolverFailure failure = error.failure();
     failure.time = from;

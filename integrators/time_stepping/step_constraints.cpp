@@ -23,7 +23,7 @@ bool ends_at_rounding(const TimeStepping& options) {
 /// True if turning can open contacts: of a feature on an arm, on ground that moves or is curved, of two
 /// bodies, of outlines, at limits (contact/detection/lasting_contacts.h).
 bool turning_opens(const Detector& detector) {
-  const GroundShapes& shapes = detector.outlines().shapes();
+  const GroundShapes& shapes = detector.shapes();
   bool curved = false;
   for (Index shape = 0; shape < shapes.size(); ++shape) {
     curved = curved || shapes.has_pieces(shape) || !shapes.is_flat(shape);
@@ -37,10 +37,7 @@ bool is_plain(const Detector& detector) {
 }
 
 /// True if some surface takes more to slip than to slide.
-bool sticks(const Detector& detector) {
-  return detector.points().law_facts().static_friction ||
-         detector.outlines().laws().facts_of_bodies().static_friction;
-}
+bool sticks(const Detector& detector) { return detector.law_facts().static_friction; }
 
 /// Friction in joints takes the restitution of what approaches fastest in its island.
 void share_restitution(std::span<const StepIsland> islands, const StepInput& in, double capture_speed) {
@@ -85,8 +82,8 @@ void StepConstraints::place_surfaces(const StepInput& in) {
   if (ground_.end.time() == in.start.time) std::swap(ground_.start, ground_.end);
   detector_.place(in.start.time, ground_.start);
   detector_.place(in.end_time, ground_.end);
-  detector_.demand_continuous(ground_.start, ground_.end);
-  detector_.list_jumps(in.start.time, in.end_time, ground_.jumps);
+  detector_.shapes().demand_continuous(ground_.start, ground_.end);
+  detector_.shapes().list_jumps(in.start.time, in.end_time, ground_.jumps);
 }
 
 std::span<const GroundJump> StepConstraints::jumps_within(double begin, double end) const {
@@ -313,7 +310,7 @@ void StepConstraints::merge(const StepInput& in, std::span<const Touch> touching
     add_single_before(first);
     joined_.push_back({first, component_of(outlines[touching[i].b].body)});
     sources_.push_back(i);
-    if (!resists || !detector_.outlines().law(touching[i].a, touching[i].b)->resists_rolling()) continue;
+    if (!resists || !detector_.outlines().law(touching[i].a, touching[i].b).resists_rolling()) continue;
     joined_.push_back(joined_.back());
     sources_.push_back(i);
   }

@@ -29,9 +29,11 @@ constexpr double noise = 5e-14;  // [m]
 /// A model whose bodies start as described: coordinates are parabolas in time, or chords.
 class Parabolas final : public PairPath {
 public:
-  explicit Parabolas(System system)
+  /// \param of_all set_acceleration()
+  explicit Parabolas(System system, const Vec<2>& of_all = Vec<2>::Zero())
       : model_(std::move(system)), detector_(model_.assembly), start_(model_.state) {
     acceleration_.assign(start_.v.size(), 0.0);
+    set_acceleration(of_all);
   }
 
   [[nodiscard]] PathSample sample(double time, PathLook how) override {
@@ -69,8 +71,7 @@ public:
       out.insert(out.end(), own.begin(), own.end());
       bodies.push_back(c);
     }
-    if (detector_.bodies_touch())
-      BodyPairs(model_.assembly, detector_.outlines().of_bodies()).append(bodies, out);
+    if (detector_.bodies_touch()) BodyPairs(detector_.outlines()).append(bodies, out);
     return out;
   }
 
@@ -165,9 +166,7 @@ protected:
     System system = with_surface();
     add_floor(system, GetParam().is_block);
     add_disc(system, {0.0, height}, velocity, 3.0);
-    Parabolas path(std::move(system));
-    path.set_acceleration({0.0, -gravity});
-    return path;
+    return Parabolas(std::move(system), {0.0, -gravity});
   }
 };
 

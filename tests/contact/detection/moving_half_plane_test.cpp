@@ -321,7 +321,7 @@ TEST(MovingHalfPlane, DoesNotLookAcrossBreaks) {
                                             {.time = -1.0, .obstacle = drum},
                                             {.time = 0.5, .obstacle = drum},
                                             {.time = 1.0, .obstacle = drum}};
-  EXPECT_EQ(Detector(assembly).discontinuities(), expected);
+  EXPECT_EQ(Detector(assembly).shapes().discontinuities(), expected);
 }
 
 TEST(MovingHalfPlane, ImpossibleMotionsAreRefusedByName) {

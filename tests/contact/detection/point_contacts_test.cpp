@@ -1,4 +1,5 @@
 #include "tests/constraint_sets.h"
+#include <carom/contact/detection/outlines.h>
 #include <carom/contact/detection/point_contacts.h>
 
 #include "tests/contact/detection/placed_model.h"
@@ -54,7 +55,8 @@ TEST(PointContacts, FindAllPairsThatTouch) {
     const carom_test::PlacedModel model(random_bodies(random, 90, joined));
     const auto components = static_cast<Index>(model.assembly.components().size());
     ASSERT_EQ(components, joined == Joined::to_a_chain ? 1U : 90U);
-    const PointContacts contacts(model.assembly);
+    const Outlines outlines(model.assembly);
+    const PointContacts contacts(model.assembly, outlines.shapes(), outlines.laws());
     EXPECT_TRUE(contacts.needs_rotations());
     std::vector<ContactPair> pairs;
     for (Index component = 0; component < components; ++component) contacts.append_pairs(component, pairs);
@@ -86,7 +88,8 @@ TEST(PointContacts, FindThoseThatLastAmongManyAsOneByOne) {
   for (int repeat = 0; repeat < 20; ++repeat) {
     carom_test::PlacedModel model(random_bodies(random, 90, Joined::not_at_all));
     for (double& v : model.state.v) v = random.uniform(-5.0, 5.0);
-    const PointContacts contacts(model.assembly);
+    const Outlines outlines(model.assembly);
+    const PointContacts contacts(model.assembly, outlines.shapes(), outlines.laws());
     const auto components = static_cast<Index>(model.assembly.components().size());
     std::vector<ContactPair> pairs;
     for (Index component = 0; component < components; ++component) contacts.append_pairs(component, pairs);
@@ -124,7 +127,8 @@ TEST(PointContacts, FindIntoASetThatHeldOthersWhatTheyFindAnew) {
   int nothing_near = 0, several = 0;
   for (int repeat = 0; repeat < 20; ++repeat) {
     const carom_test::PlacedModel model(random_bodies(random, 90, Joined::not_at_all));
-    const PointContacts contacts(model.assembly);
+    const Outlines outlines(model.assembly);
+    const PointContacts contacts(model.assembly, outlines.shapes(), outlines.laws());
     const GroundPlaces places;
     for (const double margin : {-0.9, 0.0, infinity}) {
       const ContactQuery query{model.state.view(), model.evaluation, places, nullptr, margin, nullptr};
@@ -162,8 +166,8 @@ TEST(PointContacts, WithoutGroundNothingTouches) {
   System system;
   system.add(Particle{.mass = 1.0});
   const carom_test::PlacedModel model(system);
-  const PointContacts contacts(model.assembly);
-  EXPECT_TRUE(contacts.shapes().empty());
+  const Outlines outlines(model.assembly);
+  const PointContacts contacts(model.assembly, outlines.shapes(), outlines.laws());
   EXPECT_FALSE(contacts.needs_rotations());
   EXPECT_FALSE(contacts.law_facts().static_friction);
   std::vector<ContactPair> pairs;
@@ -178,7 +182,8 @@ TEST(PointContacts, FrictionActsAtTheSpeedOfSliding) {
   system.add(HalfPlane{.normal = {0, 1}}, curve);
   system.add(Particle{.mass = 1.0, .velocity = {0.3, 0.0}});
   const carom_test::PlacedModel model(system);
-  const PointContacts contacts(model.assembly);
+  const Outlines outlines(model.assembly);
+  const PointContacts contacts(model.assembly, outlines.shapes(), outlines.laws());
   EXPECT_TRUE(contacts.law_facts().static_friction);
   const GroundPlaces places;
   ConstraintSet found;
@@ -193,7 +198,8 @@ TEST(PointContacts, InSpaceRowsAreAFrame) {
   system.add(spatial::HalfSpace{.normal = {0.0, 0.6, 0.8}}, law);
   system.add(spatial::Particle{.mass = 1.0, .position = {1.0, 2.0, 3.0}});
   const carom_test::PlacedModel model(system);
-  const PointContacts contacts(model.assembly);
+  const Outlines outlines(model.assembly);
+  const PointContacts contacts(model.assembly, outlines.shapes(), outlines.laws());
   const GroundPlaces places;
   ConstraintSet found;
   contacts.find({0, 1}, {model.state.view(), model.evaluation, places, nullptr, infinity, nullptr}, found);

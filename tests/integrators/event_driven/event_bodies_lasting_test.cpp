@@ -147,7 +147,7 @@ std::vector<double> forces_at_rest(const System& system) {
   const Detector detector(assembly);
   const EventDriven options;
   MotionMemory memory(assembly);
-  const BodyPairs pairs(assembly, detector.outlines().of_bodies());
+  const BodyPairs pairs(detector.outlines());
   std::vector<Index> bodies(assembly.layout()->bodies().size());
   std::iota(bodies.begin(), bodies.end(), Index{0});
   GroupComponents all;
