@@ -21,11 +21,12 @@ std::vector<DescribedOutline> outlines_of_shapes(const Assembly& assembly,
     const auto place = system.shape_kinds().place(serial);
     const ShapeKind& kind = *system.shape_kinds().entries()[place.entry].kind;
     outlines.clear();
+    points.clear();
     const PartCheck check(system.name(ShapeId{serial, system.token()}), system);
+    kind.rounded_points(place.slot, points);
+    check_rounded_points(check, points);
     kind.outlines(place.slot, check, outlines);
     for (const Outline& outline : outlines) check_outline(check, outline);
-    points.clear();
-    kind.rounded_points(place.slot, points);
     check_same_set(check, points, outlines);
     const Index material = number_of(kind.material(place.slot), materials);
     for (const Outline& outline : outlines) {
