@@ -26,8 +26,8 @@ public:
   /// Appends the pairs of a vertex of one of two outlines and the other outline, if these may touch: those of
   /// the vertices of the first one come first. \param a,b their numbers in BodyOutlines
   void append_between(Index a, Index b, std::vector<ContactPair>& out) const {
-    append(outlines_->list()[a], b, out);
-    append(outlines_->list()[b], a, out);
+    append(a, b, out);
+    append(b, a, out);
   }
 
 private:

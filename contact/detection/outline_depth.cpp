@@ -1,6 +1,6 @@
 // Problem: no depth on a path is missed, whatever its sides do between two looks.
 
-#include <carom/contact/detection/gap_convex.h>
+#include <carom/contact/detection/narrow_phase.h>
 #include <carom/contact/detection/outline_depth.h>
 #include <carom/contact/detection/pair_sides.h>
 #include <carom/core/numerics/never.h>

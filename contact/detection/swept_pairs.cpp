@@ -34,7 +34,7 @@ double change_of_ground(const GroundMotion* from, const GroundMotion* to, double
 }  // namespace
 
 SweptPairs::SweptPairs(const Assembly& assembly, const Detector& detector, FlatPairs flat)
-    : detector_(&detector), between_bodies_(assembly, detector.outlines().of_bodies()) {
+    : detector_(&detector), between_bodies_(detector.outlines()) {
   const auto components = static_cast<Index>(assembly.components().size());
   for (Index component = 0; component < components; ++component) {
     for (const ContactPair& pair : detector.pairs(component)) {
