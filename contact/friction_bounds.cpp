@@ -17,7 +17,7 @@ void FrictionBounds::add(const Assembly& assembly, Index component, const JointC
   }
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly.joint_kinds()[k];
-    if (!kind.has_dry_friction()) continue;
+    if (kind.friction_rows() == 0) continue;
     const Range range = assembly.joints(component, k);
     for (Index slot = range.begin; slot < range.end; ++slot) {
       const JointDryFriction dry_friction = kind.dry_friction(slot);

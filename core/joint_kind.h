@@ -169,8 +169,9 @@ public:
   virtual void limit(const JointView& /*at*/, Index /*joint*/, Index /*which*/, JointLimit& /*out*/) const {}
   /// Name of a unilateral row in messages, e.g. "upper".
   [[nodiscard]] virtual std::string_view limit_label(Index /*which*/) const { return {}; }
-  /// True if joints of this kind have dry friction along the coordinate of the joint that they act on.
-  [[nodiscard]] virtual bool has_dry_friction() const { return false; }
+  /// Rows of dry friction of each joint, in addition to rows(): 0, or 1 along the coordinate of the joint
+  /// that it acts on.
+  [[nodiscard]] virtual Index friction_rows() const { return 0; }
   /// The friction of a joint.
   [[nodiscard]] virtual JointDryFriction dry_friction(Index /*joint*/) const { return {}; }
   /// Load of the multipliers of the rows of a joint on its body `to`; for dry friction, that of the friction.

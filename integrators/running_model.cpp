@@ -149,7 +149,7 @@ JointReaction RunningModel::reaction(const State& state, const Companion& compan
                      "; allowed: a joint of this model");
   }
   const JointKind& kind = system.joint_kinds().kind_of(joint.serial);
-  if (kind.rows() == 0 && !kind.has_dry_friction()) {
+  if (kind.rows() + kind.friction_rows() == 0) {
     throw ModelError("reaction of a joint: " + system.name(joint) +
                      " only limits; allowed: a joint that binds (impacts of a stop are events)");
   }

@@ -24,7 +24,7 @@ public:
   void pattern(Index, JointRow*) const override {}
   void evaluate(const JointView&, Index, JointRow*) const override {}
   void derivatives(const JointView&, Index, JointRowDerivative*) const override {}
-  [[nodiscard]] bool has_dry_friction() const override { return true; }
+  [[nodiscard]] Index friction_rows() const override { return 1; }
   [[nodiscard]] JointDryFriction dry_friction(Index joint) const override;
   /// Friction is given as the moment of the reaction: it acts along the coordinate.
   [[nodiscard]] JointReaction reaction(const JointView&, Index, const double* multipliers) const override;

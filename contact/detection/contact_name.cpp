@@ -1,4 +1,5 @@
 #include <carom/contact/detection/contact_name.h>
+#include <carom/core/registry.h>
 #include <carom/core/system.h>
 
 #include <vector>
@@ -31,10 +32,10 @@ namespace {
 std::string joint_name(const System& system, const FeatureKey& key) {
   const JointKind* const kind = system.joint_kinds().kind_ever(key.serial);
   if (kind == nullptr) refuse("a", key);
-  std::string name = system.name(JointId{key.serial, system.token()});
-  if (kind->has_dry_friction()) return name;
-  if (key.feature >= kind->limits()) refuse("a", key);
-  return name + " (" + std::string(kind->limit_label(key.feature)) + ")";
+  const std::string name = system.name(JointId{key.serial, system.token()});
+  if (key.feature < kind->limits()) return name + " (" + std::string(kind->limit_label(key.feature)) + ")";
+  if (key.feature >= kind->limits() + kind->friction_rows()) refuse("a", key);
+  return name;
 }
 
 std::string shape_name(const System& system, const FeatureKey& key, const char* side) {

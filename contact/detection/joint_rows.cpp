@@ -29,7 +29,7 @@ JointRows::JointRows(const Assembly& assembly)
   });
   first_friction_ = static_cast<Index>(rows_.size());
   collect(&OfComponent::friction, [this](const Row& row) {
-    if (row.kind->has_dry_friction()) rows_.push_back(row);
+    if (row.kind->friction_rows() > 0) rows_.push_back(row);
   });
   if (!rows_.empty()) arms_ = arms_of(assembly);
 }
@@ -39,7 +39,7 @@ void JointRows::for_joints(Index component, F&& f) const {
   std::vector<BodyId> ends;
   for (Index k = 0; k < assembly_->joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly_->joint_kinds()[k];
-    if (kind.limits() == 0 && !kind.has_dry_friction()) continue;
+    if (kind.limits() + kind.friction_rows() == 0) continue;
     const Range joints = assembly_->joints(component, k);
     for (Index joint = joints.begin; joint < joints.end; ++joint) {
       ends.clear();

@@ -85,7 +85,7 @@ template <class F>
 void for_pressed_friction(const Assembly& assembly, Index component, F&& f) {
   for (Index k = 0; k < assembly.joint_kinds().size(); ++k) {
     const JointKind& kind = *assembly.joint_kinds()[k];
-    if (!kind.has_dry_friction()) continue;
+    if (kind.friction_rows() == 0) continue;
     const Range range = assembly.joints(component, k);
     for (Index slot = range.begin; slot < range.end; ++slot) {
       const double coefficient = kind.dry_friction(slot).coefficient;

@@ -164,7 +164,7 @@ JointReaction ClockGroup::reaction(const JointKind& kind, Index slot, JointId jo
   MotionSample& at = parts_.memory->instant.now;
   parts_.motion.sample(parts_.clock.output, parts_.output.y().data(), Forces::all, at);
   const std::vector<ActiveContact>& closed = parts_.motion.active().list();
-  if (kind.has_dry_friction()) {
+  if (kind.friction_rows() > 0) {
     const auto has_dry_friction =
         std::find_if(closed.begin(), closed.end(), [&](const ActiveContact& contact) {
           return contact.at.has_dry_friction() && !contact.rolls() && contact.at.key.a.serial == joint.serial;

@@ -38,8 +38,8 @@ TEST(JointFriction, BindsNothing) {
   const JointKind& kind = wheel.system.joint_kinds().kind_of(friction.serial);
   EXPECT_EQ(kind.rows(), 0u);
   EXPECT_EQ(kind.limits(), 0u);
-  EXPECT_TRUE(kind.has_dry_friction());
-  EXPECT_FALSE(wheel.system.joint_kinds().kind_of(wheel.pin.serial).has_dry_friction());
+  EXPECT_EQ(kind.friction_rows(), 1u);
+  EXPECT_EQ(wheel.system.joint_kinds().kind_of(wheel.pin.serial).friction_rows(), 0u);
   const double force = -0.3;
   EXPECT_EQ(kind.reaction({}, 0, &force).moment, -0.3);
 }
@@ -66,6 +66,9 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   EXPECT_EQ(contact.law.sticking_friction(), 1.5);
   EXPECT_EQ(contact.gap, 0.0);
   EXPECT_EQ(detector.name(contact.key), wheel.system.name(friction));
+  ConstraintKey second = contact.key;
+  second.a.feature = 1;
+  EXPECT_MODEL_ERROR((void)detector.name(second), "feature 1 of joint", "keys of contacts");
   EXPECT_EQ(contact.normal_velocity(model.state.v.data()), 0.0);
   EXPECT_DOUBLE_EQ(contact.tangential_velocity(model.state.v.data()), model.state.rate(slide));
   EXPECT_TRUE(detector.pairs(component).empty());
