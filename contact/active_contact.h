@@ -26,7 +26,7 @@ struct ActiveContact {
   bool frictionless = false;  ///< without friction: neither sticks nor cares which way it slips
   SingleConstraint at;        ///< at the present configuration
   double friction = 0.0;      ///< coefficient: sliding where it slips, static where it sticks
-  /// Force; of friction in a joint Constraint::friction_bound; of rolling resistance that of its contact [N].
+  /// Force; of friction in a joint OfJoint::friction_bound; of rolling resistance that of its contact [N].
   double normal = 0.0;
   /// Force; of friction in a joint along its coordinate; of rolling resistance the moment over its arm
   /// (Constraint::OfJoint::length) [N].
@@ -36,15 +36,13 @@ struct ActiveContact {
 
   /// True if the tangent is a constraint.
   [[nodiscard]] bool sticks() const { return mode == ContactMode::stick; }
-  /// True of rolling resistance.
-  [[nodiscard]] bool rolls() const { return at.type == ConstraintType::rolling; }
   /// Factor that makes a normal force of distances from the edge of friction, for moments against rolling
   /// too.
-  [[nodiscard]] double margin_scale() const { return rolls() ? 1.0 / friction : 1.0; }
+  [[nodiscard]] double margin_scale() const { return at.attached ? 1.0 / friction : 1.0; }
   /// The least of its normal force and, where it sticks, its distance from the edge of friction [N].
   [[nodiscard]] double margin() const {
     const double edge = sticks() ? margin_scale() * (friction * normal - std::abs(tangential)) : normal;
-    return at.has_dry_friction() ? edge : std::min(normal, edge);
+    return at.normals == 0 ? edge : std::min(normal, edge);
   }
   /// Sign of the sliding velocity, 0 if it sticks.
   [[nodiscard]] double slip_sign() const {

@@ -29,7 +29,6 @@ double own_response(const ImpulseDirection& direction, const BodyResponse& respo
 }  // namespace
 
 double ActiveContact::friction_at(const Constraint& where, const double* velocities) const {
-  if (where.type == ConstraintType::rolling) return where.law.rolling_resistance / where.of_joint.length;
   if (frictionless) return 0.0;
   if (sticks()) return where.law.sticking_friction();
   if (!where.law.falls_with_speed()) return where.law.friction;
@@ -63,16 +62,17 @@ Index ActiveSet::mechanism(Index body) const {
 
 /// Finds which contacts are of mechanisms that touch each other; false if none do.
 bool ActiveSet::find_islands() {
-  const auto is_of_two = [](const ActiveContact& contact) {
-    return contact.at.type == ConstraintType::contact && contact.at.bodies > 1;
+  // Rows of a joint are of one mechanism.
+  const auto may_join = [](const ActiveContact& contact) {
+    return contact.at.bodies > 1 && !contact.at.key.is_of_joint();
   };
-  if (std::none_of(contacts_.begin(), contacts_.end(), is_of_two)) return false;
+  if (std::none_of(contacts_.begin(), contacts_.end(), may_join)) return false;
   std::vector<JoinedNodes>& joined = memory_->joined;
   joined.clear();
   Index nodes = 0;
   for (const ActiveContact& contact : contacts_) {
     const Index first = mechanism(contact.at.body());
-    const Index second = is_of_two(contact) ? mechanism(contact.at.blocks[1].body) : first;
+    const Index second = may_join(contact) ? mechanism(contact.at.blocks[1].body) : first;
     joined.push_back({first, second});
     nodes = std::max({nodes, first + 1, second + 1});
   }
@@ -119,7 +119,7 @@ int ActiveSet::row_of(const Row& row, const Constraint& at) { return row.tangent
 
 /// Moment of the rolling resistance of a contact by its normal force: 0 where the spin is held, or none is.
 double ActiveSet::lever(std::size_t contact) const {
-  if (contact + 1 >= contacts_.size() || !contacts_[contact + 1].rolls()) return 0.0;
+  if (contact + 1 >= contacts_.size() || !contacts_[contact + 1].at.attached) return 0.0;
   const ActiveContact& rolling = contacts_[contact + 1];
   return -rolling.slip_sign() * rolling.friction * rolling.at.of_joint.length;
 }
@@ -132,7 +132,7 @@ void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std
   rows.clear();
   rows.reserve(2 * (last - first));
   for (std::size_t i = first; i < last; ++i) {
-    if (!contacts_[i].at.has_dry_friction()) rows.push_back({i, false});
+    if (contacts_[i].at.normals > 0) rows.push_back({i, false});
     if (contacts_[i].sticks()) rows.push_back({i, true});
   }
   directions.clear();
@@ -215,7 +215,7 @@ void ActiveSet::refine(double size, double* acceleration) {
 void ActiveSet::add_dry_friction(std::size_t first, std::size_t last, double* acceleration) {
   for (std::size_t i = first; i < last; ++i) {
     ActiveContact& contact = contacts_[i];
-    if (!contact.at.has_dry_friction() || contact.rolls()) continue;
+    if (!contact.at.has_given_bound()) continue;
     contact.normal = contact.at.of_joint.friction_bound;
     if (contact.sticks()) continue;
     contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
@@ -252,17 +252,11 @@ bool ActiveSet::react(std::size_t first, std::size_t last, double* acceleration)
   }
   for (std::size_t i = 0; i < n; ++i) {
     ActiveContact& contact = contacts_[rows[i].contact];
-    if (rows[i].tangent) {
-      contact.tangential = unknown[i];
-    } else {
-      contact.normal = unknown[i];
-      if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
-    }
+    (rows[i].tangent ? contact.tangential : contact.normal) = unknown[i];
   }
   for (std::size_t i = first; i < last; ++i) {
     ActiveContact& contact = contacts_[i];
-    if (!contact.rolls()) continue;
-    contact.normal = contacts_[i - 1].normal;
+    contact.normal = contacts_[i - contact.at.attached].normal;
     if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
   }
   memory_->delassus.add_response(unknown, acceleration);

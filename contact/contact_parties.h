@@ -14,7 +14,7 @@ namespace carom {
 template <class Record>
 void set_parties(const ConstraintHead& at, const Assembly& assembly, Record& out) {
   const Layout& layout = *assembly.layout();
-  const bool of_bodies = at.type == ConstraintType::contact && at.bodies == 2;
+  const bool of_bodies = at.rows > 1 && at.bodies == 2;
   const bool of_ground = at.key.b.owner == FeatureKey::Owner::obstacle;
   const BodyId body = layout.id(at.body()), other = of_bodies ? layout.id(at.blocks[1].body) : BodyId{};
   out.body = body;

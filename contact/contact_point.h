@@ -20,7 +20,7 @@ struct PointOfContact {
 /// they stay so of a constraint that is no contact
 inline void find_point_of_contact(const Constraint& at, const double* centre, std::array<double, 3>& point,
                                   std::array<double, 3>& normal) {
-  if (at.type != ConstraintType::contact) return;
+  if (at.rows < 2) return;
   const double *const n = at.row(0), *const t = at.row(1);
   if (at.rows == 2) {
     normal[0] = n[0];

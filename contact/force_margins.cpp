@@ -37,7 +37,7 @@ double sum_of_slopes(double a, double b) {
 
 /// Lines of a contact: normal force, and both edges of friction, or of the moment, where it sticks.
 std::size_t lines_of(const ActiveContact& contact) {
-  return (contact.at.has_dry_friction() ? 0U : 1U) + (contact.sticks() ? 2U : 0U);
+  return std::size_t{contact.at.normals} + (contact.sticks() ? 2U : 0U);
 }
 
 }  // namespace
@@ -71,20 +71,13 @@ void ForceMargins::append_vectors(std::span<const ActiveContact> contacts, const
     numbers_.resize(numbers_.size() + 2 * (last - first), 0.0);
     double* const vector = numbers_.data() + vectors_.back().begin;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const ActiveContact& contact = contacts[rows[i].contact];
       double* const of_contact = vector + 2 * (rows[i].contact - first);
-      if (rows[i].tangent) {
-        of_contact[1] = work_[i];
-      } else {
-        of_contact[0] = work_[i];
-        if (!contact.sticks()) of_contact[1] = -contact.slip_sign() * contact.friction * work_[i];
-      }
+      of_contact[rows[i].tangent ? 1 : 0] = work_[i];
     }
     for (std::size_t i = first; i < last; ++i) {
       const ActiveContact& contact = contacts[i];
-      if (!contact.rolls()) continue;
       double* const of_contact = vector + 2 * (i - first);
-      of_contact[0] = of_contact[-2];
+      of_contact[0] = of_contact[-2 * contact.at.attached];
       if (!contact.sticks()) of_contact[1] = -contact.slip_sign() * contact.friction * of_contact[0];
     }
     remove_rounding({vector, 2 * (last - first)});
@@ -98,7 +91,7 @@ void ForceMargins::collect(std::span<const ActiveContact> contacts, const double
     const ActiveContact& c = contacts[i];
     const double dn = vector ? vector[2 * i] : 0.0;
     const double dt = vector ? vector[2 * i + 1] : 0.0;
-    if (!c.at.has_dry_friction()) lines_.push_back({c.normal, dn});
+    if (c.at.normals > 0) lines_.push_back({c.normal, dn});
     if (!c.sticks()) continue;
     const double scale = c.margin_scale();
     for (const double side : {-1.0, 1.0}) {
@@ -182,7 +175,7 @@ void ForceMargins::state_lines(std::span<const ActiveContact> contacts, std::siz
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ActiveContact& c = contacts[i];
     const std::size_t at = 2 * i;
-    if (!c.at.has_dry_friction()) line(c.normal, [&](const double* vector) { return vector[at]; });
+    if (c.at.normals > 0) line(c.normal, [&](const double* vector) { return vector[at]; });
     if (!c.sticks()) continue;
     const double scale = c.margin_scale();
     for (const double side : {-1.0, 1.0}) {

@@ -33,7 +33,7 @@ void FrictionBounds::add(const Assembly& assembly, Index component, const JointC
 }
 
 const FrictionBounds::Bearing* FrictionBounds::find(const Constraint& contact) const {
-  if (!contact.has_dry_friction() || contact.type == ConstraintType::rolling) return nullptr;
+  if (!contact.key.is_of_joint()) return nullptr;
   const Index serial = contact.key.a.serial;
   const auto at =
       std::lower_bound(bearings_.begin(), bearings_.end(), serial,

@@ -16,15 +16,13 @@ constexpr double chooses_rate_after = 1.0 - ImpulseWork::joint_restitution_lack;
 void share_impact_restitution(std::span<Constraint> contacts, const double* velocities, double least_speed) {
   double fastest = least_speed, restitution = 0.0;
   for (const Constraint& contact : contacts) {
-    if (contact.has_dry_friction()) continue;
     const double approach = -contact.normal_velocity(velocities);
     if (!(approach > fastest)) continue;
     fastest = approach;
     restitution = contact.law.normal_restitution;
   }
   for (Constraint& contact : contacts) {
-    if (contact.has_dry_friction() && contact.type != ConstraintType::rolling)
-      contact.law.tangential_restitution = chooses_rate_after * restitution;
+    if (contact.has_given_bound()) contact.law.tangential_restitution = chooses_rate_after * restitution;
   }
 }
 

@@ -23,7 +23,7 @@ double ImpulseMap::mass_ratio() const {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
     const Constraint& at = constraints_[c];
-    if (at.has_dry_friction()) continue;
+    if (at.normals == 0) continue;
     std::fill(velocity.begin(), velocity.end(), 0.0);
     unit[place(c, 0)] = 1.0;
     response_->dense.add_response(unit, velocity.data());

@@ -21,20 +21,12 @@ namespace carom {
 
 namespace {
 
-/// The set of rolling resistance, which stands behind the rows of its contact. \param normal row of that
-void set_rolling_row(const Constraint& at, int normal, RowSet& set) {
-  set.kind = SetKind::bounded_interval;
-  set.bound = normal;
-  set.coefficient = at.friction;
-}
-
-/// Modes by constraint: those of the groups, which rolling resistance shares with its contact.
+/// Modes by constraint: those of the groups, which what is attached shares with the constraint before it.
 void share_modes(std::span<const Constraint> constraints, std::span<const ContactMode> of_groups,
                  std::vector<ContactMode>& modes) {
   std::size_t group = 0;
   for (std::size_t c = 0; c < constraints.size(); ++c) {
-    const bool rolling = constraints[c].type == ConstraintType::rolling;
-    modes[c] = rolling ? modes[c - 1] : of_groups[group++];
+    modes[c] = constraints[c].attached ? modes[c - 1] : of_groups[group++];
   }
 }
 
@@ -54,7 +46,7 @@ void demand_room(std::size_t constraints, int rows) {
 bool are_for_sweeps(std::span<const Constraint> constraints) {
   const auto in_joints = static_cast<std::size_t>(
       std::count_if(constraints.begin(), constraints.end(),
-                    [](const Constraint& constraint) { return constraint.has_dry_friction(); }));
+                    [](const Constraint& constraint) { return constraint.normals == 0; }));
   return in_joints < factored_constraints &&
          constraints.size() - in_joints > static_cast<std::size_t>(most_exact_contacts);
 }
@@ -165,20 +157,18 @@ void IslandProblem::write_rows(Range some, const double* velocity_before) {
   auto row = static_cast<std::size_t>(first_row_[some.begin]);
   for (std::size_t c = some.begin; c < some.end; ++c) {
     fetch_contact_ahead(constraints, c + ahead);
-    if (factored && is_planar_contact(constraints[c])) {
+    if (factored && constraints[c].rows == 2) {  // a contact in the plane
       write_planar_contact(constraints[c], velocity_before, static_cast<int>(row), all_rows.behind(row));
       row += 2;
       continue;
     }
+    if (constraints[c].attached) modes_.assign(constraints.size(), ContactMode::open);
+    update_bound(c);
     for (int i = 0; i < constraints[c].rows; ++i, ++row) {
       directions_[row] = {&constraints[c], i};
-      if (constraints[c].type == ConstraintType::rolling) {
-        set_rolling_row(constraints[c], first_row_[c - 1], problem_.sets()[row]);
-        modes_.assign(constraints.size(), ContactMode::open);
-      } else if (constraints[c].has_dry_friction()) {
-        update_bound(c);
-      } else {
-        set_contact_row(constraints[c], first_row_[c], i, problem_.sets()[row]);
+      if (!constraints[c].has_given_bound()) {
+        const int bounding = first_row_[c - constraints[c].attached];
+        set_bounded_row(constraints[c], bounding, i, problem_.sets()[row]);
       }
       before_[row] = constraints[c].velocity(i, velocity_before);
       restitution_[row] = constraints[c].restitution(i);
@@ -211,7 +201,7 @@ void IslandProblem::respond(BodyResponse& response) {
 
 void IslandProblem::update_bound(std::size_t constraint) {
   const Constraint& at = constraints_[constraint];
-  if (at.type == ConstraintType::rolling) return;
+  if (!at.has_given_bound()) return;
   RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint])];
   const double slides = slides_[constraint] * at.of_joint.friction_bound,
                bound = at.friction * at.of_joint.friction_bound;
@@ -222,7 +212,8 @@ void IslandProblem::update_bound(std::size_t constraint) {
 
 void IslandProblem::slide(std::size_t constraint, double ratio) {
   const Constraint& at = constraints_[constraint];
-  if (at.has_dry_friction() && at.type != ConstraintType::rolling) {
+  if (at.tangents() == 0) return;
+  if (at.has_given_bound()) {
     slides_[constraint] = ratio;
     update_bound(constraint);
   } else {

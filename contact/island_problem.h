@@ -61,10 +61,11 @@ public:
   /// Makes W. Of a response that is only nearly symmetric W takes one half; that is good enough for
   /// set_velocity().
   void respond(BodyResponse& response);
-  /// Takes note of another Constraint::friction_bound of friction in a joint.
+  /// Takes note of another OfJoint::friction_bound of a constraint; of one without a given bound: nothing.
   void update_bound(std::size_t constraint);
   /// Makes a planar contact, friction in a joint, or rolling resistance slip whatever its tangential
-  /// velocity: P_t = ratio P_n. P_n of rolling resistance is that of its contact.
+  /// velocity: P_t = ratio P_n, with the normal impulse, or given bound, that bounds P_t. A limit stays as it
+  /// is.
   void slide(std::size_t constraint, double ratio);
   /// Solves by a law of impact other than Newton's from now on: b is that of an impact. Null: by Newton's.
   void use(ImpactSolver* solver, ImpactLaw law) { impact_ = {solver, law}; }
@@ -137,10 +138,10 @@ private:
   ContactProblem problem_;
   ContactSolution answer_;
   ImpactChoice impact_;
-  std::vector<ContactMode> modes_;  // by constraint; empty where none is rolling resistance
+  std::vector<ContactMode> modes_;  // by constraint; empty where none is attached to another
   std::vector<int> first_row_;
   FactorScratch scratch_;
-  std::vector<double> slides_;  // by constraint: of friction in a joint the ratio given to slide(), or 0
+  std::vector<double> slides_;  // by constraint: where the bound is given the ratio of slide(), or 0
   std::vector<double> before_, restitution_, xi_;
 };
 

@@ -32,25 +32,21 @@ struct RowCount {
     const Constraint& at = constraints[c];
     first_row[c] = rows;
     rows += at.rows;
-    planar = planar && at.rows <= 2 && at.type != ConstraintType::rolling;
+    planar = planar && at.rows <= 2 && at.attached == 0;
     several = several || at.bodies > 1 || at.body() != constraints.front().body();
   }
   // One body with a few contacts is worth an exact answer.
   return {rows, planar && (several || constraints.size() > static_cast<std::size_t>(most_exact_contacts))};
 }
 
-/// The set that impulses along a row of a contact or limit lie in. \param first row of the constraint
-inline void set_contact_row(const Constraint& at, int first, int row, RowSet& set) {
+/// The set that impulses along a row lie in, unless its bound is given. \param bounding the normal row whose
+/// impulse bounds those along tangential rows
+inline void set_bounded_row(const Constraint& at, int bounding, int row, RowSet& set) {
   set = {};  // a half line
-  if (row == 0) return;
-  set.kind = at.rows == 2 ? SetKind::bounded_interval : SetKind::bounded_disc;
-  set.bound = first;
+  if (row < at.normals) return;
+  set.kind = at.tangents() == 1 ? SetKind::bounded_interval : SetKind::bounded_disc;
+  set.bound = bounding;
   set.coefficient = at.friction;
-}
-
-/// True of a contact in the plane.
-[[nodiscard]] inline bool is_planar_contact(const Constraint& at) {
-  return at.type == ConstraintType::contact && at.rows == 2;
 }
 
 /// Where the two rows of a planar contact of an island in factors stand.
@@ -73,8 +69,8 @@ inline void write_planar_contact(const Constraint& at, const double* velocity_be
   const double gamma_n = along[0] - at.surface_velocity[0], gamma_t = along[1] - at.surface_velocity[1];
   rows.directions[0] = {&at, 0};
   rows.directions[1] = {&at, 1};
-  set_contact_row(at, first, 0, rows.sets[0]);
-  set_contact_row(at, first, 1, rows.sets[1]);
+  set_bounded_row(at, first, 0, rows.sets[0]);
+  set_bounded_row(at, first, 1, rows.sets[1]);
   rows.before[0] = gamma_n;
   rows.before[1] = gamma_t;
   rows.restitution[0] = e_n;

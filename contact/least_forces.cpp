@@ -57,10 +57,9 @@ void LeastForces::collect_lines(std::span<const ActiveContact> group, const std:
   const std::size_t n = forces.size(), vectors = orthonormal_.size() / n;
   lines_at_.clear();
   slopes_.clear();
-  std::size_t normal = n, row = 0;  // rows of the contact at hand
+  std::size_t normal = n, row = 0;  // rows of the present contact
   for (const ActiveContact& contact : group) {
-    const bool has_dry_friction = contact.at.has_dry_friction();
-    if (!has_dry_friction) {
+    if (contact.at.normals > 0) {
       normal = row++;
       lines_at_.push_back(forces[normal]);
       for (std::size_t k = 0; k < vectors; ++k) slopes_.push_back(orthonormal_[k * n + normal]);
@@ -68,13 +67,13 @@ void LeastForces::collect_lines(std::span<const ActiveContact> group, const std:
     }
     if (!contact.sticks()) continue;
     const std::size_t tangent = row++;
-    const bool has_own_bound = has_dry_friction && !contact.rolls();
-    const double bound = has_own_bound ? contact.at.of_joint.friction_bound : forces[normal];
+    const bool is_given = contact.at.has_given_bound();
+    const double bound = is_given ? contact.at.of_joint.friction_bound : forces[normal];
     for (const double side : {-1.0, 1.0}) {
       lines_at_.push_back(contact.friction * bound + side * forces[tangent]);
       for (std::size_t k = 0; k < vectors; ++k) {
         const double* const vector = orthonormal_.data() + k * n;
-        slopes_.push_back((has_own_bound ? 0.0 : contact.friction * vector[normal]) + side * vector[tangent]);
+        slopes_.push_back((is_given ? 0.0 : contact.friction * vector[normal]) + side * vector[tangent]);
       }
       slopes_.push_back(yield);
     }

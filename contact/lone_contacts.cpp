@@ -13,7 +13,7 @@ namespace {
 
 /// True of a planar contact of one body, which turns. \param last body of the one before it, or `none`
 bool may_be_alone(const Constraint& at, Index last) {
-  return at.type == ConstraintType::contact && at.rows == 2 && at.bodies == 1 &&
+  return at.rows == 2 && at.bodies == 1 &&
          at.blocks[0].columns == static_cast<int>(one_body::of_planar_body) &&
          (last == none || at.body() > last);
 }

@@ -18,7 +18,7 @@ std::string moving_along(std::size_t row, const System& system, std::span<const 
   std::vector<std::string> names;
   for (const Constraint& contact : contacts) {
     const FeatureKey& ground = contact.key.b;
-    if (contact.type != ConstraintType::contact || ground.owner != FeatureKey::Owner::obstacle) continue;
+    if (contact.attached || ground.owner != FeatureKey::Owner::obstacle) continue;
     if (contact.surface_velocity_after[row] == 0.0) continue;
     const std::string name = system.name(ObstacleId{ground.serial, system.token()});
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);

@@ -22,7 +22,7 @@ constexpr int halvings = 52;
 std::optional<ImpactLaw> law_of_impact(std::span<const Constraint> constraints) {
   std::optional<ImpactLaw> law;
   for (const Constraint& constraint : constraints) {
-    if (constraint.type != ConstraintType::contact) continue;
+    if (constraint.rows < 2) continue;  // it follows the law of the contacts
     if (law && *law != constraint.law.impact_law) return std::nullopt;
     law = constraint.law.impact_law;
   }
@@ -35,10 +35,10 @@ void keep_fastest(ConstraintSet& constraints, const double* velocities) {
     fastest = std::max(fastest, -constraint.normal_velocity(velocities));
   }
   const double least = (1.0 - same_speed) * fastest;
-  bool kept = true;  // the contact that rolling resistance belongs to
+  bool kept = true;
   constraints.remove_if([&](const Constraint& constraint) {
-    if (constraint.type == ConstraintType::rolling) return !kept;
-    kept = constraint.has_dry_friction() || !(-constraint.normal_velocity(velocities) < least);
+    if (!constraint.attached)
+      kept = constraint.normals == 0 || !(-constraint.normal_velocity(velocities) < least);
     return !kept;
   });
 }
@@ -53,8 +53,7 @@ ImpulseWork work_of_impact(const IslandProblem& problem) {
   for (const Constraint& constraint : problem.constraints()) {
     for (int i = 0; i < constraint.rows; ++i, ++row) {
       work.add(impulses[row], before[row], xi[row] - factor * constraint.restitution(i) * before[row]);
-      if (constraint.type == ConstraintType::joint_friction)
-        work.allow_for_joint_friction(impulses[row], before[row]);
+      if (constraint.has_given_bound()) work.allow_for_joint_friction(impulses[row], before[row]);
     }
   }
   return work;
@@ -91,8 +90,7 @@ double limit_gain(const IslandProblem& problem, std::span<Constraint> constraint
 }
 
 bool takes_part(const Constraint& constraint, const ImpactsOfMode& of_mode, bool follows_joint_force) {
-  if (constraint.type == ConstraintType::rolling || !constraint.has_dry_friction()) return true;
-  return of_mode.with_joint_friction && follows_joint_force;
+  return !constraint.has_given_bound() || (of_mode.with_joint_friction && follows_joint_force);
 }
 
 ImpactOnset onset_of(double fastest, double noise, double capture_speed, int struck,
@@ -112,7 +110,6 @@ Struck strike(ConstraintSet& touching, const StrikeInput& in, FunctionRef<Strike
   const bool plastic = in.plastic || out.cut_sequence;
   for (Constraint& constraint : touching) {
     if (plastic) constraint.remove_restitution();
-    if (constraint.type == ConstraintType::rolling) continue;
     const double sliding = constraint.sliding_speed(in.velocity);
     constraint.friction = constraint.law.friction_at(sliding > in.speed_noise ? sliding : 0.0);
   }

@@ -48,6 +48,9 @@ struct FeatureKey {
 struct ConstraintKey {
   FeatureKey a;  ///< feature of a body or shape, or of a joint
   FeatureKey b;  ///< feature of the other body, of what is fixed to the ground, or of the same joint
+
+  /// True of a limit of a joint and of friction in one, which have no place where features touch.
+  [[nodiscard]] bool is_of_joint() const { return a.owner == FeatureKey::Owner::joint; }
   friend auto operator<=>(const ConstraintKey&, const ConstraintKey&) = default;
 };
 
@@ -63,18 +66,19 @@ enum class ContactMode : std::uint8_t {
 /// Name of a mode: "open", "stick", "slip+", "slip-", "slip".
 [[nodiscard]] CAROM_API std::string_view to_string(ContactMode mode);
 
-/// Origin of a constraint. It says which sets the impulses along its rows lie in; the rest is the same for
-/// all.
-enum class ConstraintType : std::uint8_t {
-  contact,         ///< row 0 along the normal, P_n >= 0; the others tangential, bounded by friction times P_n
-  limit,           ///< one row, P >= 0: limit of a joint's coordinate
-  joint_friction,  ///< one row, |P| <= friction times friction_bound: dry friction along a joint's coordinate
-  rolling          ///< one row, |M| <= friction times P_n: rolling resistance of the contact before it
-};
-
 /// A constraint of one to three bodies at one configuration, against each other or against what is fixed to
-/// the ground, without the numbers of its rows. Row 0 of a contact is the normal direction (from `b` of the
-/// key towards `a`), the others are tangential (in the plane: the normal turned clockwise).
+/// the ground, without the numbers of its rows. The normal row comes first, if there is one, with P_n >= 0;
+/// the others are tangential, with |P_t| <= friction times a bound. Who makes a constraint says how many rows
+/// of which kind there are, and whose force the bound is:
+/// - a contact has one normal row, and one tangential row in the plane or two in space, bounded by its own
+/// P_n;
+/// - a limit of a joint has a normal row alone;
+/// - friction in a joint has a tangential row alone, bounded by a given number, OfJoint::friction_bound;
+/// - rolling resistance has a tangential row alone, along a spin, bounded by P_n of the contact that it is
+///   attached to.
+///
+/// The normal of a contact points from `b` of the key towards `a`; its tangent in the plane is the normal
+/// turned clockwise.
 struct ConstraintHead {
   static constexpr int max_rows = 3;
   static constexpr int max_bodies = 3;
@@ -86,19 +90,23 @@ struct ConstraintHead {
     int columns = 0;    ///< its velocities
   };
 
-  /// Numbers of a limit of a joint, and of friction in one; of rolling resistance, which is along a spin,
-  /// too.
+  /// Numbers of a limit of a joint, and of friction in one; the length of rolling resistance, which is along
+  /// a spin, too.
   struct OfJoint {
     double friction_bound = 0.0;  ///< of friction: `friction` times it is the largest force, or impulse [N]
     /// Factor of the coordinate, so that all rows have lengths: 1 where it is one; else an arm [m], with
     /// which velocities along the row are those of places on bodies. The moment of a force along the row is
     /// the force times it.
     double length = 1.0;
+    Index source = none;  ///< of a limit and of friction in a joint: its number in the detector
   };
 
   // Numbers that the problem of a contact reads come first and close together: many contacts are read in
   // turn.
-  ConstraintType type = ConstraintType::contact;        ///< origin
+  std::uint8_t normals = 1;  ///< number of normal rows: 1, or 0 where all rows are tangential
+  /// 1 of a constraint that is attached to the one before it in every list, else 0: its tangential row is
+  /// bounded by the normal force of that one, in whose group of the contact problem and record it is.
+  std::uint8_t attached = 0;
   int rows = 0;                                         ///< of a contact 2 in the plane, 3 in space
   int bodies = 0;                                       ///< blocks in use
   std::array<Block, std::size_t{max_bodies}> blocks{};  ///< bodies whose velocities have columns
@@ -120,15 +128,17 @@ struct ConstraintHead {
   OfJoint of_joint;   ///< of a limit of a joint, of friction in one, of rolling resistance
   std::array<double, static_cast<std::size_t>(max_rows)>
       drift{};  ///< rate of the velocities along the rows at constant velocities of the bodies [m/s^2]
-  Index source = none;  ///< of a limit and of friction in a joint: its number in the detector
 
-  /// True of friction in a joint and of what is like it: a row without a normal.
-  [[nodiscard]] bool has_dry_friction() const { return type >= ConstraintType::joint_friction; }
-  /// Row along which it may stick: the first tangential one.
-  [[nodiscard]] int tangent_row() const { return has_dry_friction() ? 0 : 1; }
+  /// Number of tangential rows: 0 of a limit.
+  [[nodiscard]] int tangents() const { return rows - normals; }
+  /// Row along which it may stick: the first tangential one. Of a limit, that of zeros behind its own.
+  [[nodiscard]] int tangent_row() const { return normals; }
+  /// True if its tangential row is bounded by a given force, OfJoint::friction_bound, and not by the normal
+  /// force of a constraint.
+  [[nodiscard]] bool has_given_bound() const { return normals + attached == 0; }
   /// Restitution along a row.
   [[nodiscard]] double restitution(int i) const {
-    return i >= tangent_row() ? law.tangential_restitution : law.normal_restitution;
+    return i >= normals ? law.tangential_restitution : law.normal_restitution;
   }
   /// Makes it an impact without rebound. Rolling resistance is a constraint of its own.
   void remove_restitution() { law.normal_restitution = law.tangential_restitution = 0.0; }
@@ -150,7 +160,7 @@ struct ConstraintHead {
   /// Makes it ready for a contact, whatever it was: what not every contact writes is as made by default. Key,
   /// law, friction and gap are to be written, bodies and rows to be added.
   void start_contact() {
-    if (type != ConstraintType::contact) return clear();
+    if (rows == 1) return clear();                           // it was no contact
     drift = surface_velocity = surface_velocity_after = {};  // of a contact the rest is as made by default
     allowed_approach = 0.0;
     clear_bodies();
@@ -258,7 +268,7 @@ public:
   }
   /// Velocity along the normal; 0 of a row without one. \param velocities of all bodies
   [[nodiscard]] double normal_velocity(const double* velocities) const {
-    return has_dry_friction() ? 0.0 : velocity(0, velocities);
+    return normals == 0 ? 0.0 : velocity(0, velocities);
   }
   /// Velocity along the tangent of the plane, or along the coordinate of the joint; 0 of a limit.
   [[nodiscard]] double tangential_velocity(const double* velocities) const {
@@ -266,7 +276,7 @@ public:
   }
   /// Acceleration along the normal; 0 of a row without one. \param accelerations of all bodies
   [[nodiscard]] double normal_acceleration(const double* accelerations) const {
-    return has_dry_friction() ? 0.0 : acceleration(0, accelerations);
+    return normals == 0 ? 0.0 : acceleration(0, accelerations);
   }
   /// Acceleration along the tangent of the plane, or along the coordinate of the joint; 0 of a limit.
   [[nodiscard]] double tangential_acceleration(const double* accelerations) const {
@@ -275,7 +285,7 @@ public:
   /// Adds a force, or impulse, in the plane to loads. \param normal of a row without one: nothing
   /// \param out an array over all velocities
   void add_force(double normal, double tangential, double* out) const {
-    if (!has_dry_friction()) add_transposed(0, normal, out);
+    if (normals > 0) add_transposed(0, normal, out);
     add_transposed(tangent_row(), tangential, out);
   }
   /// Velocity along row i after the time step or impact. \param velocities of all bodies, then

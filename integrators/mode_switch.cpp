@@ -68,7 +68,7 @@ void find_closed(const Detector& detector, const GroundPlaces& places, Index com
   ConstraintSet with_rolling;
   for (const Constraint& contact : contacts) {
     with_rolling.add(contact);
-    if (contact.type != ConstraintType::contact || !contact.law.resists_rolling()) continue;
+    if (!contact.law.resists_rolling()) continue;
     write_rolling_resistance(contact, ground_motion_of(detector, contact, places), with_rolling.add());
   }
   std::swap(contacts, with_rolling);

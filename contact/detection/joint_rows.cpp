@@ -120,8 +120,7 @@ ConstraintKey JointRows::key_of(const Row& row) {
 
 void JointRows::fill_limit(Index number, const JointLimit& limit, Constraint& out) const {
   out.key = key_of(rows_[number]);
-  out.type = ConstraintType::limit;
-  out.source = number;
+  out.of_joint.source = number;
   out.law.friction = 0.0;
   out.law.normal_restitution = limit.restitution;
   out.law.tangential_restitution = 0.0;
@@ -133,8 +132,8 @@ void JointRows::fill_friction(Index number, const JointView& at, Constraint& out
   const Row& row = rows_[number];
   const JointDryFriction friction = row.kind->dry_friction(row.slot);
   out.key = key_of(row);
-  out.type = ConstraintType::joint_friction;
-  out.source = number;
+  out.normals = 0;
+  out.of_joint.source = number;
   out.friction = out.law.friction = 1.0;
   out.law.static_friction = friction.static_factor;
   out.law.normal_restitution = out.law.tangential_restitution = 0.0;
@@ -143,7 +142,7 @@ void JointRows::fill_friction(Index number, const JointView& at, Constraint& out
 }
 
 void JointRows::update_friction(const JointView& at, Constraint& constraint) const {
-  const Row& row = rows_[constraint.source];
+  const Row& row = rows_[constraint.of_joint.source];
   const JointTable& joints = *assembly_->layout()->joints();
   const JointTable::Place place = joints.place(row.kind->on_joint(row.slot).serial);
   JointRow coordinate;

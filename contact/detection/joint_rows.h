@@ -16,7 +16,7 @@
 namespace carom {
 
 /// Limits of the joints of an assembly, by component, then friction in them, by component. A row is known by
-/// its number in this list (Constraint::source, ContactPair::joint_row).
+/// its number in this list (Constraint::OfJoint::source, ContactPair::joint_row).
 ///
 /// Coordinates that are angles count times an arm, Constraint::OfJoint::length: contacts, limits and friction
 /// in joints are compared with each other and with speeds and gaps in m/s and m, and what is the faster of
@@ -36,9 +36,11 @@ public:
   [[nodiscard]] bool has_friction(Index component) const {
     return !of_component_[component].friction.empty();
   }
-  /// True of friction whose bound depends on the force of its joint.
-  [[nodiscard]] bool depends_on_joint_force(const Constraint& friction) const {
-    const Row& row = rows_[friction.source];
+  /// True of friction in a joint whose bound depends on the force of the joint. False of any other
+  /// constraint.
+  [[nodiscard]] bool depends_on_joint_force(const Constraint& constraint) const {
+    if (constraint.of_joint.source == none) return false;
+    const Row& row = rows_[constraint.of_joint.source];
     return row.kind->dry_friction(row.slot).coefficient > 0.0;
   }
 

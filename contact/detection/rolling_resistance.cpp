@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace carom {
 
@@ -30,11 +31,15 @@ void write_rolling_resistance(const Constraint& contact, const GroundMotion* mot
   constexpr int of_planar_body = 3;
   const double arm = arm_of(contact);
   static_cast<ConstraintHead&>(row) = contact;
-  row.type = ConstraintType::rolling;
+  row.normals = 0;
+  row.attached = 1;
   row.start_rows(1);
   row.of_joint.length = arm;
-  row.friction = contact.law.rolling_resistance / arm;
-  row.law.tangential_restitution = contact.law.rolling_restitution;
+  // The law along the spin: the same coefficient at rest and at any speed.
+  row.friction = row.law.friction = row.law.rolling_resistance / arm;
+  row.law.static_friction = std::numeric_limits<double>::quiet_NaN();
+  row.law.stribeck_speed = 0.0;
+  row.law.tangential_restitution = row.law.rolling_restitution;
   row.allowed_approach = 0.0;
   row.surface_velocity = row.surface_velocity_after = row.drift = {};
   if (motion != nullptr) {

@@ -155,7 +155,7 @@ void ClockGroup::close_known_contacts(const ContactModes& present) {
 void ClockGroup::write(State& state, ContactModes& modes) const {
   parts_.motion.model().unknowns.scatter(parts_.output.y(), state);
   for (const ActiveContact& contact : parts_.motion.active().list()) {
-    if (!contact.rolls()) modes.emplace_back(contact.at.key, contact.mode);
+    if (!contact.at.attached) modes.emplace_back(contact.at.key, contact.mode);
   }
 }
 
@@ -165,13 +165,10 @@ JointReaction ClockGroup::reaction(const JointKind& kind, Index slot, JointId jo
   parts_.motion.sample(parts_.clock.output, parts_.output.y().data(), Forces::all, at);
   const std::vector<ActiveContact>& closed = parts_.motion.active().list();
   if (kind.friction_rows() > 0) {
-    const auto has_dry_friction =
-        std::find_if(closed.begin(), closed.end(), [&](const ActiveContact& contact) {
-          return contact.at.has_dry_friction() && !contact.rolls() && contact.at.key.a.serial == joint.serial;
-        });
-    const double force = has_dry_friction == closed.end()
-                             ? 0.0
-                             : has_dry_friction->at.of_joint.length * has_dry_friction->tangential;
+    const auto friction = std::find_if(closed.begin(), closed.end(), [&](const ActiveContact& contact) {
+      return contact.at.key.is_of_joint() && contact.at.key.a.serial == joint.serial;
+    });
+    const double force = friction == closed.end() ? 0.0 : friction->at.of_joint.length * friction->tangential;
     return kind.reaction(at.joint_view(), slot, &force);
   }
   const std::span<const double> multipliers = parts_.motion.joints().multipliers(at, closed);
@@ -190,9 +187,9 @@ void ClockGroup::list_forces(std::vector<LastingContact>& out) {
   parts_.motion.active().margins(parts_.memory->detection.margins);
   const Assembly& assembly = *parts_.motion.model().assembly;
   for (const ActiveContact& contact : parts_.motion.active().list()) {
-    if (contact.at.type == ConstraintType::rolling) {
+    if (contact.at.attached) {
       out.back().rolling_moment = contact.at.of_joint.length * contact.tangential;
-    } else if (contact.at.type == ConstraintType::contact) {
+    } else if (!contact.at.key.is_of_joint()) {
       LastingContact& force = out.emplace_back();
       const Constraint& closed = contact.at;
       write_place(closed, assembly, at.state.q.data(), force);

@@ -43,7 +43,7 @@ double own_response(const Assembly& assembly, const Constraint& contact) {
 
 /// True of a candidate that stays closed and pushes along a normal.
 bool presses(const Candidate& candidate) {
-  return candidate.mode != ContactMode::open && !candidate.rolls() && !candidate.at.has_dry_friction();
+  return candidate.mode != ContactMode::open && candidate.at.normals > 0;
 }
 
 /// Responses along rows of a problem where the normals of what is closed hold, besides the joints: a slider
@@ -249,7 +249,7 @@ private:
     model_.detector->place(trial_.time, places);
     SingleConstraint there;
     model_.detector->contact(pair_, trial_.view(), evaluation_, places, there);
-    if (there.rows <= there.tangent_row()) return 0.0;
+    if (there.tangents() == 0) return 0.0;
     const double slip = there.tangential_velocity(trial_.v.data());
     double speed = 0.0;
     for_coordinates([&](Index i) { speed = std::max(speed, std::abs(trial_.v[i]) * lengths_[i]); });
@@ -321,8 +321,8 @@ bool leave_dead_points(const ModeDecision& made, const EventInstant& at, std::sp
   for (std::size_t c = 0; c < taking_part.size(); ++c) {
     Candidate& candidate = candidates[taking_part[c]];
     const Constraint& contact = problem.constraints()[c];
-    if (candidate.mode == ContactMode::open || candidate.slip != 0.0 || candidate.rolls()) continue;
-    if (candidate.frictionless || contact.rows <= contact.tangent_row()) continue;
+    if (candidate.mode == ContactMode::open || candidate.slip != 0.0 || contact.attached) continue;
+    if (candidate.frictionless || contact.tangents() == 0) continue;
     const int row = problem.first_row(c) + contact.tangent_row();
     const double own = own_response(*at.motion.model().assembly, contact);
     const bool by_joints = std::abs(problem.problem().w(row, row)) <= held_fast * own;

@@ -140,7 +140,7 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
   const std::size_t first = fresh.size();
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
-    if (contact.has_dry_friction()) {
+    if (contact.normals == 0) {
       book_without_normal(impact, c, work);
       continue;
     }
@@ -190,7 +190,7 @@ void EventBalance::book_without_normal(const SolvedImpact& impact, std::size_t c
   const ImpulseMap map = impact.problem.map();
   const double impulse = map.impulse(c, 0);
   const double work = sum.add(impulse, map.before(c, 0), at.tangential_velocity(impact.velocity));
-  if (at.type != ConstraintType::rolling) {
+  if (!at.attached) {
     sum.allow_for_joint_friction(impulse, map.before(c, 0));
     flows[EnergyFlow::joint_friction] -= work;
     return;
@@ -214,7 +214,7 @@ void EventBalance::book_joints(const SolvedImpact& impact, const GroupModel& mod
   const IslandProblem& problem = impact.problem;
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
-    if (!contact.has_dry_friction() || contact.type == ConstraintType::rolling) continue;
+    if (!contact.has_given_bound()) continue;
     JointReaction reaction;
     reaction.moment = contact.of_joint.length * problem.map().impulse(c, 0);
     const JointId friction{contact.key.a.serial, model.assembly->system().token()};

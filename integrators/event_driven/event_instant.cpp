@@ -92,7 +92,7 @@ void EventInstant::take_velocities() {
 double largest_acceleration(std::span<const Constraint> constraints, const EventInstant& at) {
   double largest = 0.0;
   for (const Constraint& constraint : constraints) {
-    if (constraint.has_dry_friction()) continue;
+    if (constraint.normals == 0) continue;
     for (int row = 0; row < constraint.rows; ++row)
       largest = std::max(largest, std::abs(constraint.acceleration(row, at.now.acceleration.data())));
   }

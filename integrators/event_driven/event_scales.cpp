@@ -28,7 +28,7 @@ double speed_noise_of(double velocity, double absolute_tolerance) {
 }
 
 double EventScales::noise_of(const SmoothMotion& motion, const Constraint& contact) const {
-  if (contact.type != ConstraintType::rolling) return speed_noise;
+  if (!contact.attached) return speed_noise;
   const std::vector<double>& lengths = motion.memory().closure.lengths;
   double length = std::numeric_limits<double>::infinity();
   for (int b = 0; b < contact.bodies; ++b) {
@@ -93,7 +93,7 @@ EventScales event_scales(const SmoothMotion& motion, const MotionSample& at,
   scales.force_rounding = force_rounding_of(sizes.place, sizes.lever);
   scales.gap_noise = gap_noise_of(std::max(sizes.gap, sizes.place), options);
   for (const Constraint& contact : contacts) {
-    if (contact.type == ConstraintType::rolling) continue;  // a spin, as fast as its contact
+    if (contact.attached) continue;  // a spin, as fast as its contact
     velocity = std::max(velocity, std::abs(contact.surface_velocity[0]));
     velocity = std::max(velocity, std::abs(contact.surface_velocity[1]));
   }

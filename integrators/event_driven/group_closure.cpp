@@ -121,13 +121,13 @@ void GroupClosure::apply_to_known_contacts(EventInstant& at) {
   constexpr double left_by_tolerances = 1e3;
   std::vector<ActiveContact>& list = motion_->active().list();
   const std::vector<ActiveContact> known = list;
-  bool erased = false;  // the contact that rolling resistance belongs to
+  bool erased = false;  // the constraint that what is attached belongs to
   std::erase_if(list, [&](ActiveContact& closed) {
     closed.at = at.contacts[closed.place];
     // Time stepping gives what sticks its tangential restitution.
     const double noise = left_by_tolerances * at.scales.noise_of(*motion_, closed.at);
     const bool slips = closed.sticks() && std::abs(closed.at.tangential_velocity(at.velocities())) > noise;
-    if (closed.rolls()) return erased || slips;
+    if (closed.at.attached) return erased || slips;
     erased =
         slips || closed.at.gap > motion_->model().options->gap_tolerance ||
         std::abs(closed.at.normal_velocity(at.velocities())) > left_by_tolerances * at.scales.speed_noise;

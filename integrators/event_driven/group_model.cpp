@@ -53,7 +53,7 @@ std::vector<BodyPairBound> bounds_of(const Detector& detector, const std::vector
   return bounds;
 }
 
-bool has_dry_friction(const Detector& detector, const GroupComponents& group) {
+bool has_joint_friction(const Detector& detector, const GroupComponents& group) {
   return std::any_of(group.components.begin(), group.components.end(),
                      [&](Index component) { return detector.joints().has_friction(component); });
 }
@@ -62,7 +62,7 @@ bool has_dry_friction(const Detector& detector, const GroupComponents& group) {
 Index works_of(const Detector& detector, const GroupComponents& group) {
   if (resists_rolling(detector)) return work_lines;
   const auto in_joints = static_cast<Index>(WorkLine::joint_friction);
-  return has_dry_friction(detector, group) ? in_joints + 1 : in_joints;
+  return has_joint_friction(detector, group) ? in_joints + 1 : in_joints;
 }
 
 void add_load_traits(const Assembly& assembly, Index component, LoadTraits& traits) {

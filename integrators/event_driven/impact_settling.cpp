@@ -7,15 +7,6 @@
 
 namespace carom {
 
-namespace {
-
-/// True of a contact in the plane or in space, and of friction in a joint.
-bool has_friction(const Constraint& constraint) {
-  return constraint.rows > 1 || constraint.has_dry_friction();
-}
-
-}  // namespace
-
 bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, SolverChain& chain,
                             SettlingLimit& limit) {
   capture_ = capture_speed(pairs, at);
@@ -58,7 +49,7 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
   for (const Index i : pairs) {
     if (!at.touches(i) || -at.approach(i) > capture_) continue;
     const Constraint& contact = at.contacts[i];
-    if (contact.type == ConstraintType::rolling) continue;
+    if (contact.attached) continue;
     pile = pile || contact.bodies > 1;
     Constraint& listed = touching_.add(contact);
     places_.push_back(i);
@@ -67,7 +58,7 @@ bool ImpactSettling::list_touching(std::span<const Index> pairs, const EventInst
     listed.friction =
         sliding <= capture_ ? contact.law.sticking_friction() : contact.law.friction_at(sliding);
     any = any || (at.before_at[i] != none && -at.approach(i) > noise);
-    any = any || (has_friction(contact) && sliding > noise && sliding <= capture_);
+    any = any || (sliding > noise && sliding <= capture_);
   }
   return any && pile;
 }
@@ -79,7 +70,7 @@ bool ImpactSettling::comes_to_rest(std::size_t c, const EventInstant& at) const 
   const ContactMode turned = slip > 0.0 ? ContactMode::slip_negative : ContactMode::slip_positive;
   const ContactMode mode = problem_.modes()[c];
   const bool rests = mode == ContactMode::stick || mode == turned;
-  return rests || (touching_[c].has_dry_friction() && mode == ContactMode::open);
+  return rests || (touching_[c].normals == 0 && mode == ContactMode::open);
 }
 
 /// Lists the contacts that are pressed then. False if they need not be stopped.
@@ -92,13 +83,13 @@ bool ImpactSettling::list_held(const EventInstant& at) {
     const Index place = places_[c];
     // A contact that was open before bounces as ever.
     const bool bounces = at.before_at[place] == none && -at.approach(place) > noise;
-    const bool in_joint = contact.has_dry_friction();
+    const bool in_joint = contact.has_given_bound();
     if (!in_joint && bounces) continue;
     if (!in_joint && !(problem_.map().impulse(c, 0) > 0.0)) continue;
-    const double sliding = has_friction(contact) ? contact.sliding_speed(at.velocities()) : 0.0;
+    const double sliding = contact.sliding_speed(at.velocities());
     // A contact at rest is not to start by what stops others: accelerations decide about that.
     const bool sticks =
-        has_friction(contact) && sliding <= slow_ && (sliding <= noise || comes_to_rest(c, at));
+        contact.tangents() > 0 && sliding <= slow_ && (sliding <= noise || comes_to_rest(c, at));
     if (in_joint && !sticks) continue;
     any = any || -at.approach(place) > noise || (sticks && sliding > noise);
     ActiveContact& held = held_.emplace_back();

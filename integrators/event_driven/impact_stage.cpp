@@ -23,9 +23,8 @@ bool is_repeated(const Constraint& contact, const Constraint& other, double gap_
   const auto same_owner = [](const FeatureKey& one, const FeatureKey& two) {
     return one.owner == two.owner && one.serial == two.serial;
   };
-  if (contact.type != ConstraintType::contact || other.type != contact.type || contact.rows != other.rows ||
-      contact.columns() != other.columns() || !same_owner(contact.key.a, other.key.a) ||
-      !same_owner(contact.key.b, other.key.b)) {
+  if (contact.rows != other.rows || contact.columns() != other.columns() ||
+      !same_owner(contact.key.a, other.key.a) || !same_owner(contact.key.b, other.key.b)) {
     return false;
   }
   // Directions and levers both follow from the places of the same two corners.
@@ -166,14 +165,14 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
   }
 }
 
-/// Leaves out contacts that are listed twice, with their rolling resistance: one contact is solved as such.
+/// Leaves out contacts that are listed twice, with what is attached to them: one contact is solved as such.
 void ImpactStage::leave_out_repeated(double gap_noise) {
   ConstraintSet& touching = memory_->touching;
   std::size_t kept = 0;
   bool leaves_out = false;
   for (std::size_t i = 0; i < touching.size(); ++i) {
     const auto is_same = [&](const Constraint& other) { return is_repeated(touching[i], other, gap_noise); };
-    if (touching[i].type != ConstraintType::rolling) {
+    if (!touching[i].attached) {
       const auto end = touching.begin() + static_cast<std::ptrdiff_t>(kept);
       leaves_out = std::find_if(touching.begin(), end, is_same) != end;
     }
@@ -223,7 +222,7 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
   at.balance.book_joints(impact, model, at.motion.joints(), at.now);
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
-    if (contact.has_dry_friction()) continue;
+    if (contact.normals == 0) continue;
     if (problem.map().impulse(c, 0) > 0.0) accumulation_.remember(at.time, contact.key);
   }
   if (gain == 0.0 || rules_of(at).energy_gain != EnergyGain::refuse) return;
@@ -269,7 +268,7 @@ void ImpactStage::list_captured(Closing closing, std::span<const Index> pairs, E
   list.clear();
   for (std::size_t i = 0; i < memory_->touching.size(); ++i) {
     const Constraint& contact = memory_->touching[i];
-    if (contact.has_dry_friction() || contact.normal_velocity(at.velocities()) > fastest) continue;
+    if (contact.normals == 0 || contact.normal_velocity(at.velocities()) > fastest) continue;
     ActiveContact& closed = list.emplace_back();
     const bool stops = contact.rows > 1 && contact.sliding_speed(at.velocities()) <= slow;
     closed.mode = stops ? ContactMode::stick : ContactMode::slip_positive;

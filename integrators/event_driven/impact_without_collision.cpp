@@ -39,7 +39,8 @@ bool ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
   impacts.apply(EventKind::impact_without_collision, problem_, at);
   std::size_t event = first;
   for (const std::size_t i : taking_part_) {
-    if (candidates[i].rolls() || event == at.balance.fresh.size()) continue;  // in the record of its contact
+    if (candidates[i].at.attached || event == at.balance.fresh.size())
+      continue;  // in the record of its contact
     at.balance.fresh[event].stiffness = candidates[i].stiffness;
     at.balance.fresh[event++].free_acceleration = candidates[i].free_acceleration;
   }
@@ -52,9 +53,8 @@ bool ImpactWithoutCollision::resolve(std::span<const Candidate> candidates, Impa
 /// Of the answers that are listed the most dissipative one. With unequal restitution there may be none, with
 /// an equal one there is: e_n means nothing without speed.
 bool ImpactWithoutCollision::find_listed(SolverChain& chain, EventInstant& at) {
-  const auto groups = std::count_if(touching_.begin(), touching_.end(), [](const Constraint& row) {
-    return row.type != ConstraintType::rolling;
-  });
+  const auto groups = std::count_if(touching_.begin(), touching_.end(),
+                                    [](const Constraint& contact) { return !contact.attached; });
   if (groups > enumeration_groups) return false;
   bool solved = false;
   do {
@@ -71,7 +71,7 @@ void ImpactWithoutCollision::list_touching(std::span<const Candidate> candidates
   taking_part_.clear();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     // Friction in joints bounds no contact force.
-    if (candidates[i].at.has_dry_friction() && !candidates[i].rolls()) continue;
+    if (candidates[i].at.has_given_bound()) continue;
     taking_part_.push_back(i);
     Constraint& contact = touching_.add(candidates[i].at);
     if (speed == NormalSpeed::kept) continue;
@@ -100,7 +100,7 @@ bool ImpactWithoutCollision::find_limit(std::span<const Candidate> candidates, S
   for (std::size_t c = 0; c < touching_.size(); ++c) {
     Constraint& contact = touching_[c];
     contact.remove_restitution();
-    if (contact.type == ConstraintType::rolling) continue;
+    if (contact.attached) continue;  // spins
     fastest = std::max(fastest, std::abs(candidates[taking_part_[c]].slip));
   }
   const double pull = largest_acceleration(touching_, at);

@@ -59,8 +59,8 @@ void ModeDecision::list_contacts(std::span<Candidate> candidates) {
   taking_part_.reserve(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     candidates[i].mode = ContactMode::open;
-    const bool rolling = candidates[i].rolls();
-    if (rolling ? taking_part_.empty() || taking_part_.back() + 1 != i : slips_[i].open) continue;
+    const bool attached = candidates[i].at.attached != 0;
+    if (attached ? taking_part_.empty() || taking_part_.back() + 1 != i : slips_[i].open) continue;
     Constraint& contact = contacts_.add(candidates[i].at);
     taking_part_.push_back(i);
     // In accelerations minus the drift stands for the velocity of the shape on ground.
@@ -68,9 +68,8 @@ void ModeDecision::list_contacts(std::span<Candidate> candidates) {
       contact.surface_velocity[row] = contact.surface_velocity_after[row] = -contact.drift[row];
     }
     contact.remove_restitution();
-    if (!rolling) contact.friction = contact.law.sticking_friction();
-    if (rolling || slips_[i].sign == 0.0) continue;
-    contact.friction = contact.law.sliding_friction(std::abs(candidates[i].slip));
+    contact.friction = slips_[i].sign == 0.0 ? contact.law.sticking_friction()
+                                             : contact.law.sliding_friction(std::abs(candidates[i].slip));
   }
 }
 
@@ -86,8 +85,7 @@ void ModeDecision::build(SmoothMotion& motion, const MotionSample& now) {
   motion.joints().build(problem_, contacts_, zero_.data());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slips_[taking_part_[c]].sign;
-    if (sign != 0.0 && contacts_[c].type != ConstraintType::limit)
-      problem_.slide(c, -sign * contacts_[c].friction);
+    if (sign != 0.0) problem_.slide(c, -sign * contacts_[c].friction);
   }
   problem_.set_free_velocity(now.acceleration.data());
   size_ = size_without_contact(problem_);
@@ -145,18 +143,18 @@ bool ModeDecision::finds_several(std::span<Candidate> candidates) {
 void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const double> force) {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
-    if (candidates[i].rolls()) {
+    if (contacts_[c].attached) {
       candidates[i].mode = mode_of_rolling(problem_, c, candidates[i - 1].mode, slips_[i].sign, force);
       continue;
     }
     const ContactMode found = problem_.modes()[c];
     // Friction in a joint never opens.
-    const bool has_dry_friction = contacts_[c].has_dry_friction();
-    if (has_dry_friction && slips_[i].sign == 0.0) {
+    const bool has_given_bound = contacts_[c].has_given_bound();
+    if (has_given_bound && slips_[i].sign == 0.0) {
       candidates[i].mode = found == ContactMode::open ? ContactMode::stick : found;
       continue;
     }
-    const double normal = has_dry_friction ? 1.0 : force[static_cast<std::size_t>(problem_.first_row(c))];
+    const double normal = has_given_bound ? 1.0 : force[static_cast<std::size_t>(problem_.first_row(c))];
     if (slips_[i].sign != 0.0) {
       candidates[i].mode = normal > 0.0 ? mode_by_sign(slips_[i].sign) : ContactMode::open;
     } else {
@@ -215,8 +213,8 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Constraint& contact = contacts_[c];
     const std::size_t i = taking_part_[c];
-    const bool rests = candidates[i].rolls() && candidates[i - 1].mode == ContactMode::open;
-    if (contact.has_dry_friction() && !rests && candidates[i].slip == 0.0 && !candidates[i].starts_slipping) {
+    const bool rests = candidates[i - contact.attached].mode == ContactMode::open;
+    if (contact.normals == 0 && !rests && candidates[i].slip == 0.0 && !candidates[i].starts_slipping) {
       // Friction in a joint that contacts keep from turning, at its bound or not, does not slip; where the
       // bound is zero the force does not determine the mode.
       const double along = contact.tangential_acceleration(acceleration_.data());
@@ -226,11 +224,11 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
         candidates[i].mode = mode_by_sign(along);
       }
     }
-    if (contact.has_dry_friction() || candidates[i].mode != ContactMode::open) continue;
+    if (contact.normals == 0 || candidates[i].mode != ContactMode::open) continue;
     const int normal = problem_.first_row(c);
     if (problem_.problem().w(normal, normal) == 0.0) continue;  // joints hold it fast, nothing acts
     if (contact.normal_acceleration(acceleration_.data()) > SlipDirections::no_acceleration * size_) continue;
-    const double along = contact.rows > 1 ? contact.tangential_acceleration(acceleration_.data()) : 0.0;
+    const double along = contact.tangential_acceleration(acceleration_.data());
     double sign = slips_[i].sign;
     if (sign == 0.0 && std::abs(along) > SlipDirections::no_acceleration * size_) sign = along;
     // Where forces are not unique its friction would change the motion that was decided.
@@ -247,7 +245,7 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
       motion.joints().update_friction_bounds(motion.active(), now, active_, margins_, once, change);
   double largest = 0.0;
   for (const ActiveContact& closed : active_) {
-    if (!closed.at.has_dry_friction()) largest = std::max(largest, std::abs(closed.normal));
+    if (closed.at.normals > 0) largest = std::max(largest, std::abs(closed.normal));
   }
   auto closed = active_.begin();  // in the order of the candidates, as those added
   for (const std::size_t i : added) {

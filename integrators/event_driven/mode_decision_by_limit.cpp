@@ -1,6 +1,7 @@
 // Problem: forces where solvers find none, as the limit of impulses in a vanishing time.
 
 #include <carom/integrators/event_driven/mode_decision.h>
+#include <carom/integrators/event_driven/rolling_modes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ Decision ModeDecision::solve_as_limit(SmoothMotion& motion, MotionSample& now,
   const double fast = unbounded * size_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const double sign = slips_[taking_part_[c]].sign;
-    if (contacts_[c].type == ConstraintType::limit || contacts_[c].friction == 0.0) continue;
+    if (contacts_[c].friction == 0.0) continue;
     contacts_[c].surface_velocity_after[static_cast<std::size_t>(contacts_[c].tangent_row())] -= sign * fast;
   }
   motion.joints().build(problem_, contacts_, zero_.data());

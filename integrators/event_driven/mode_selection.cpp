@@ -22,7 +22,7 @@ namespace {
 std::array<double, 2> acceleration_of_ground(const Constraint& contact, const EventInstant& at) {
   const GroupModel& model = at.motion.model();
   const GroundMotion* const motion = ground_motion_of(*model.detector, contact, at.now.places);
-  if (motion == nullptr || contact.type != ConstraintType::contact) return {};
+  if (motion == nullptr || contact.attached) return {};
   const BodySlot slot = model.assembly->layout()->bodies()[contact.body()];
   const PointOfContact place = point_of_contact(contact, at.now.state.q.data() + slot.q);
   const Vec<2> acceleration =
@@ -75,7 +75,7 @@ void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
   for (std::size_t i = at.first; i < at.last; ++i) {
     const ActiveContact& c = closed[i];
     if (!c.sets_margin) continue;
-    if (!c.at.has_dry_friction() && c.normal <= at.margin + noise && c.normal <= noise) {
+    if (c.at.normals > 0 && c.normal <= at.margin + noise && c.normal <= noise) {
       releasing_.push_back(c.pair);
     } else if (c.sticks() &&
                c.margin_scale() * (c.friction * c.normal - std::abs(c.tangential)) <= at.margin + noise) {
@@ -171,7 +171,7 @@ Decision ModeSelection::decide_by_limit(Decision decision, EventInstant& at) {
 
 /// True if a contact slides.
 bool ModeSelection::any_slides() const {
-  const auto slides = [](const Candidate& at) { return at.slip != 0.0 && !at.at.has_dry_friction(); };
+  const auto slides = [](const Candidate& at) { return at.slip != 0.0 && at.at.normals > 0; };
   return std::ranges::any_of(memory_->candidates, slides);
 }
 
@@ -192,12 +192,12 @@ void ModeSelection::collect_candidates(std::span<const Index> pairs, const Event
     candidate.place = i;
     candidate.at = contact;
     take_coming_feature(at, candidate);
-    if (contact.has_dry_friction()) candidate.stiffness = std::numeric_limits<double>::infinity();
-    const double slip = contact.type == ConstraintType::limit ? 0.0 : contact.tangential_velocity(velocity);
+    if (contact.normals == 0) candidate.stiffness = std::numeric_limits<double>::infinity();
+    const double slip = contact.tangential_velocity(velocity);
     const double noise = at.scales.noise_of(at.motion, contact);
     const bool rests = candidate.pair == stopped_ || (!rolling && at.is_stopped(i, slip));
     candidate.slip = std::abs(slip) > noise && !rests ? slip : 0.0;
-    candidate.frictionless = !rolling && contact.law.sticking_friction() == 0.0;
+    candidate.frictionless = contact.law.sticking_friction() == 0.0;
     if (at.before_at[i] != none) candidate.present = at.before[at.before_at[i]].mode;
     const auto exhausted = std::ranges::find(exhausted_, candidate.pair, &ExhaustedFriction::pair);
     if (exhausted != exhausted_.end()) {
@@ -263,7 +263,7 @@ Decision ModeSelection::decide_by_excess(std::span<const Index> pairs, EventInst
   for (double excess = least_excess; excess * UnboundedForces::growth <= 1.0; excess *= growth) {
     collect_candidates(pairs, at);
     for (Candidate& candidate : memory_->candidates) {
-      if (candidate.slip == 0.0 || candidate.at.has_dry_friction()) continue;
+      if (candidate.slip == 0.0 || candidate.at.normals == 0) continue;
       Surface& law = candidate.at.law;
       law.friction = (1.0 + excess) * law.sliding_friction(std::abs(candidate.slip));
       law.static_friction = candidate.at.friction = law.friction;
@@ -330,17 +330,17 @@ void ModeSelection::record_changes(EventInstant& at) const {
   is_active.assign(model.pairs.size(), 0);
   for (const ActiveContact& contact : active) is_active[contact.place] = 1;
   for (const ActiveContact& contact : at.before) {
-    if (is_active[contact.place] == 0 && !contact.rolls())
+    if (is_active[contact.place] == 0 && !contact.at.attached)
       change(EventKind::lift_off, contact.at, ContactMode::open);
   }
   for (const ActiveContact& contact : active) {
     const Index before = at.before_at[contact.place];
     if (before == none) {
-      if (contact.at.has_dry_friction()) continue;  // it was there all the time
+      if (contact.at.normals == 0) continue;  // it was there all the time
       change(EventKind::closing, contact.at, contact.mode);
     } else if (at.before[before].mode != contact.mode && !contact.frictionless) {
-      const EventKind stops = contact.rolls() ? EventKind::hold : EventKind::stick;
-      const EventKind starts = contact.rolls() ? EventKind::roll : EventKind::slip;
+      const EventKind stops = contact.at.attached ? EventKind::hold : EventKind::stick;
+      const EventKind starts = contact.at.attached ? EventKind::roll : EventKind::slip;
       change(contact.sticks() ? stops : starts, contact.at, contact.mode);
     }
   }

@@ -36,7 +36,7 @@ double size_by_rounding(const IslandProblem& problem) {
 void open_where_parting(const DecidedContacts& decided, std::span<Candidate> candidates) {
   for (std::size_t c = 0; c < decided.contacts.size(); ++c) {
     Candidate& candidate = candidates[decided.taking_part[c]];
-    if (candidate.mode == ContactMode::open || decided.contacts[c].has_dry_friction()) continue;
+    if (candidate.mode == ContactMode::open) continue;
     if (decided.contacts[c].normal_acceleration(decided.acceleration) > decided.small)
       candidate.mode = ContactMode::open;
   }
@@ -62,9 +62,8 @@ namespace {
 /// to.
 bool is_still(const DecidedContacts& decided, std::size_t c, const Candidate& candidate) {
   const Constraint& contact = decided.contacts[c];
-  const bool rolling = contact.type == ConstraintType::rolling;
   if (candidate.mode == ContactMode::open || contact.friction == 0.0) return false;
-  if (contact.rows < 2 && !rolling) return false;
+  if (contact.tangents() == 0 || contact.has_given_bound()) return false;
   if (candidate.slip != 0.0 || candidate.starts_slipping || candidate.frictionless) return false;
   return std::abs(contact.tangential_acceleration(decided.acceleration)) <= decided.small;
 }
@@ -84,12 +83,11 @@ void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& p
   for (std::size_t c = 0; c < decided.contacts.size(); ++c) {
     Candidate& candidate = candidates[decided.taking_part[c]];
     const Constraint& contact = decided.contacts[c];
-    const bool rolling = contact.type == ConstraintType::rolling;
     if (!is_still(decided, c, candidate)) continue;
     // Friction that falls at once when sliding begins would change the force.
     const bool drops = contact.law.has_static_friction() && !contact.law.falls_with_speed();
-    if (!rolling && (contact.has_dry_friction() || drops)) continue;
-    const auto row = static_cast<std::size_t>(problem.first_row(rolling ? c - 1 : c));
+    if (drops) continue;
+    const auto row = static_cast<std::size_t>(problem.first_row(c - contact.attached));
     const auto along = static_cast<std::size_t>(problem.first_row(c) + contact.tangent_row());
     const double normal = problem.impulses()[row], tangential = problem.impulses()[along];
     if (!(normal > 0.0)) continue;
@@ -98,7 +96,7 @@ void fix_extreme_friction(const DecidedContacts& decided, const IslandProblem& p
       candidate.mode = ContactMode::stick;
       continue;
     }
-    if (rolling && size <= rounding * bound) continue;  // held without a moment
+    if (contact.attached && size <= rounding * bound) continue;  // held without a moment
     candidate.mode = tangential < 0.0 ? ContactMode::slip_positive : ContactMode::slip_negative;
     candidate.frictionless = size <= rounding * bound;
   }
@@ -111,7 +109,7 @@ bool forces_may_move(std::span<const Constraint> contacts, std::span<const std::
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Candidate& candidate = candidates[taking_part[c]];
     if (candidate.mode == ContactMode::open) continue;
-    if (contacts[c].type != ConstraintType::rolling) ++closed;
+    if (!contacts[c].attached) ++closed;
     const bool rubs = !candidate.frictionless && contacts[c].friction != 0.0;
     slides = slides || (rubs && candidate.mode != ContactMode::stick);
   }
@@ -140,8 +138,8 @@ void place_numbers(const IslandProblem& problem, std::span<const ActiveContact> 
     if (contacts[c].key != closed[at].at.key) continue;
     const auto row = static_cast<std::size_t>(problem.first_row(c));
     const auto [normal, tangential] = numbers_of(at++);
-    if (!contacts[c].has_dry_friction()) rows[row] = normal;
-    if (contacts[c].rows > 1 || contacts[c].has_dry_friction())
+    rows[row] = normal;  // of a row without normal the tangential number takes its place
+    if (contacts[c].tangents() > 0)
       rows[row + static_cast<std::size_t>(contacts[c].tangent_row())] = tangential;
   }
 }

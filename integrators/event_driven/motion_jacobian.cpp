@@ -30,7 +30,8 @@ OfContact direction(std::span<const ActiveContact> contacts, const ContactPivot:
     result[i] = contact.at.row(tangent ? contact.at.tangent_row() : 0)[i];
     if (ratio != 0.0) result[i] += ratio * contact.at.row(1)[i];
   }
-  if (tangent || force.contact + 1 == contacts.size() || !contacts[force.contact + 1].rolls()) return result;
+  if (tangent || force.contact + 1 == contacts.size() || !contacts[force.contact + 1].at.attached)
+    return result;
   const ActiveContact& rolling = contacts[force.contact + 1];
   for (std::size_t i = 0; i < most_columns; ++i)
     result[i] -= rolling.slip_sign() * rolling.friction * rolling.at.row(0)[i];
@@ -192,7 +193,7 @@ MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, co
     const double tangential = contact.sticks() ? contact.tangential : slip * contact.normal;
     for (std::size_t i = 0; i < change.count; ++i) {
       load[i] = tangential * moved.row(moved.tangent_row())[i];
-      if (!moved.has_dry_friction()) load[i] += contact.normal * moved.row(0)[i];
+      if (moved.normals > 0) load[i] += contact.normal * moved.row(0)[i];
     }
     rows = {moved.normal_acceleration(sample.acceleration.data()),
             moved.tangential_acceleration(sample.acceleration.data())};

@@ -52,7 +52,7 @@ void demand_apart(const EventInstant& at, const GroupFailure& failure) {
   const GroupModel& model = at.motion.model();
   const Constraint* deepest = nullptr;
   for (const Constraint& contact : at.contacts) {
-    if (contact.type != ConstraintType::contact || !(contact.gap < (deepest ? deepest->gap : 0.0))) continue;
+    if (contact.key.is_of_joint() || !(contact.gap < (deepest ? deepest->gap : 0.0))) continue;
     deepest = &contact;
   }
   if (deepest == nullptr || deepest->gap >= -model.options->gap_tolerance) return;
@@ -72,7 +72,7 @@ OverlapCheck::Deepest OverlapCheck::find_deepest(const State& state, const Evalu
   Deepest deepest{.gap = limit};
   const auto judge = [&] {
     for (const Constraint& at : found_) {
-      if (at.type != ConstraintType::contact || at.gap >= deepest.gap) continue;
+      if (at.key.is_of_joint() || at.gap >= deepest.gap) continue;
       deepest = {.key = at.key, .gap = at.gap, .is_deeper = true};
     }
     found_.clear();

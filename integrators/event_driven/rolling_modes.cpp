@@ -27,7 +27,7 @@ ContactMode mode_of_rolling(const IslandProblem& problem, std::size_t c, Contact
 void follow_contacts(const SlipDirections& slips, std::span<Candidate> candidates) {
   for (std::size_t i = 1; i < candidates.size(); ++i) {
     Candidate& rolling = candidates[i];
-    if (!rolling.rolls()) continue;
+    if (!rolling.at.attached) continue;
     if (candidates[i - 1].mode == ContactMode::open) {
       rolling.mode = ContactMode::open;
     } else if (rolling.mode == ContactMode::open) {
@@ -42,12 +42,12 @@ void name_cause(const IslandProblem& problem, std::span<const std::size_t> takin
   const std::span<const Constraint> contacts = problem.constraints();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const std::size_t i = taking_part[c];
-    if (contacts[c].has_dry_friction()) continue;
+    if (contacts[c].normals == 0) continue;
     const int row = problem.first_row(c);
     const double ratio = -slips[i].sign * contacts[c].friction;
     candidates[i].stiffness = stated.w(row, row);
-    if (contacts[c].rows > 1) candidates[i].stiffness += ratio * stated.w(row, row + 1);
-    if (c + 1 < contacts.size() && contacts[c + 1].type == ConstraintType::rolling) {
+    if (contacts[c].tangents() > 0) candidates[i].stiffness += ratio * stated.w(row, row + 1);
+    if (c + 1 < contacts.size() && contacts[c + 1].attached) {
       const double lever = -slips[taking_part[c + 1]].sign * contacts[c + 1].friction;
       candidates[i].stiffness += lever * stated.w(row, problem.first_row(c + 1));
     }

@@ -9,7 +9,8 @@ namespace carom {
 
 std::size_t groups_of(std::span<const Candidate> candidates) {
   return static_cast<std::size_t>(
-      std::count_if(candidates.begin(), candidates.end(), [](const Candidate& at) { return !at.rolls(); }));
+      std::count_if(candidates.begin(), candidates.end(),
+                    [](const Candidate& candidate) { return !candidate.at.attached; }));
 }
 
 void SlipDirections::start(std::span<const Candidate> candidates) {

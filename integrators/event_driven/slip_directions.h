@@ -33,9 +33,6 @@ struct Candidate {
   // Where the problem was Painleve's:
   double stiffness = 0.0;          ///< W_nn - s mu W_nt [1/kg]; infinite of friction in a joint
   double free_acceleration = 0.0;  ///< normal acceleration without contact [m/s^2]
-
-  /// True of rolling resistance.
-  [[nodiscard]] bool rolls() const { return at.type == ConstraintType::rolling; }
 };
 
 /// Mode of a contact that slips, or of one that rolls, by the sign of the velocity; sticking where it is 0.
@@ -45,7 +42,7 @@ struct Candidate {
                           : ContactMode::stick;
 }
 
-/// Number of candidates without rolling resistances: groups of rows of their problem.
+/// Number of candidates that are not attached to others: groups of rows of their problem.
 [[nodiscard]] CAROM_API std::size_t groups_of(std::span<const Candidate> candidates);
 
 /// Mode that a candidate is taken to have.

@@ -12,7 +12,7 @@ double speed_of_rounding(std::span<const Index> pairs, const EventInstant& at) {
   double fall = 0.0;
   for (const Index i : pairs) {
     const Constraint& contact = at.contacts[i];
-    if (!at.touches(i) || contact.has_dry_friction()) continue;
+    if (!at.touches(i)) continue;
     for (const double* acceleration : {at.now.acceleration.data(), at.acceleration_before.data()})
       fall = std::max(fall, std::abs(contact.normal_acceleration(acceleration)));
   }
@@ -37,7 +37,7 @@ bool ContactClosing::add_approaching(std::vector<ActiveContact>& contacts, std::
   const std::size_t before = contacts.size();
   for (const Index i : others) {
     const Constraint& contact = at.contacts[i];
-    if (!at.touches(i) || contact.has_dry_friction() || at.approach(i) <= at.scales.speed_noise) continue;
+    if (!at.touches(i) || at.approach(i) <= at.scales.speed_noise) continue;
     const auto same = [&](const ActiveContact& known) { return known.place == i; };
     const auto known = contacts.begin() + static_cast<std::ptrdiff_t>(before);
     if (std::any_of(contacts.begin(), known, same)) continue;  // rounding, or a turned row

@@ -127,11 +127,11 @@ void SmoothMotion::write_works(const MotionSample& at, double lost_inside, doubl
   if (traits.books_dissipative) dashpot -= work_of(at.dissipative);
   if (traits.books_external) external += work_of(at.external);
   for (const ActiveContact& contact : active_.list()) {
-    double& lost = contact.rolls() ? rolling : contact.at.has_dry_friction() ? in_joints : sliding;
+    double& lost = contact.at.attached ? rolling : contact.at.normals > 0 ? sliding : in_joints;
     lost -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.tangential_velocity(state.v));
     external +=
         contact.tangential * contact.at.surface_velocity[static_cast<std::size_t>(contact.at.tangent_row())];
-    if (!contact.rolls()) external += contact.normal * contact.at.surface_velocity[0];
+    if (contact.at.normals > 0) external += contact.normal * contact.at.surface_velocity[0];
   }
   if (joints_.rows().depends_on_time()) {
     // Reactions do the work of what is prescribed: G v = -rate.

@@ -67,11 +67,11 @@ public:
     book_rows(at, {before, jump.data()}, answer.impulses, work.sum, entry);
     const bool is_last = !(common_.time < in_.end_time);  // else an impact, or contact up to it
     if (is_last) result_.contact_modes.emplace_back(at.key, mode_after(at, entry, after_));
-    if (at.type == ConstraintType::limit) tell_in_coordinate(at, entry);
+    if (at.of_joint.length != 1.0) tell_in_coordinate(at, entry);
   }
 
 private:
-  /// A limit is told in the unit of its coordinate.
+  /// Numbers of a row with an arm, in the unit of its coordinate.
   static void tell_in_coordinate(const Constraint& at, ContactRecord& entry) {
     entry.gap /= at.of_joint.length;
     entry.velocity_before[0] /= at.of_joint.length;
@@ -155,8 +155,8 @@ void mark_worst(const IslandProblem& problem, std::span<ContactRecord> records) 
   std::size_t record = 0;
   int group = 0;
   for (const Constraint& at : problem.constraints()) {
-    if (at.type == ConstraintType::rolling) continue;  // of the group and the record of its contact
-    const bool recorded = !at.has_dry_friction();
+    if (at.attached) continue;  // in the group and the record of the one before it
+    const bool recorded = at.normals > 0;
     if (group++ == problem.report().worst_group) {
       if (recorded) records[record].worst = true;
       return;
@@ -192,9 +192,9 @@ double StepBalance::book_contacts(const IslandProblem& problem, const double* af
     const Constraint& at = constraints[contact];
     const auto row = static_cast<std::size_t>(problem.first_row(contact));
     if (starts.are_kept()) starts.keep(at, impulses + row);
-    if (at.type == ConstraintType::rolling) {
+    if (at.attached) {
       book_rolling(problem, contact, after, in, work.sum);
-    } else if (at.has_dry_friction()) {
+    } else if (at.normals == 0) {
       book_joint_friction(problem, contact, after, trial, work.sum);
     } else {
       if (is_swept) fetch_contact_ahead(constraints, contact + ahead);

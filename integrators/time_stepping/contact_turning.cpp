@@ -15,10 +15,11 @@ constexpr int most_tries = 20;
 constexpr double relative_rounding = 1e-14;
 
 bool is_before(const Constraint& a, const Constraint& b) {
-  return a.key != b.key ? a.key < b.key : a.type < b.type;
+  return a.key != b.key ? a.key < b.key : a.attached < b.attached;
 }
 
-/// The constraint of a key and type in a list that is ordered by these; null if there is none.
+/// The constraint of the same key, attached to another one or not, in a list that is ordered by these; null
+/// if there is none.
 const Constraint* find_in(const ConstraintSet& list, const Constraint& contact) {
   const auto at = std::lower_bound(list.begin(), list.end(), contact, is_before);
   return at == list.end() || is_before(contact, *at) ? nullptr : &*at;
@@ -53,9 +54,8 @@ void ContactTurning::begin(std::span<const StepIsland> islands, double step, boo
     if (joints_->any()) list_mechanisms(island);
     const bool answered = mechanisms_.size() > before;
     for (const Constraint& contact : island.constraints) {
-      if (contact.type == ConstraintType::rolling) continue;  // spins
-      if (!answered && (contact.type != ConstraintType::contact || !contact.turns(step, negligible_)))
-        continue;
+      if (contact.attached) continue;  // spins
+      if (!answered && (contact.key.is_of_joint() || !contact.turns(step, negligible_))) continue;
       if (alone && may_be_followed(contact)) continue;
       turned_.push_back(
           {SingleConstraint(contact), SingleConstraint(contact), contact.surface_velocity_after});
@@ -66,7 +66,7 @@ void ContactTurning::begin(std::span<const StepIsland> islands, double step, boo
   // Corners that meet do so in all of the step.
   lasting_.start(step);
   for (const Turned& turned : turned_) {
-    if (turned.start.type == ConstraintType::contact) lasting_.add(turned.start.key);
+    if (!turned.start.key.is_of_joint()) lasting_.add(turned.start.key);
   }
   lasting_.finish();
 }
@@ -74,7 +74,7 @@ void ContactTurning::begin(std::span<const StepIsland> islands, double step, boo
 /// Components of an island whose joints answer contact: not friction in them alone.
 void ContactTurning::list_mechanisms(const StepIsland& island) {
   if (std::all_of(island.constraints.begin(), island.constraints.end(),
-                  [](const Constraint& constraint) { return constraint.has_dry_friction(); })) {
+                  [](const Constraint& constraint) { return constraint.normals == 0; })) {
     return;
   }
   for (const Index component : island.components) {
@@ -178,7 +178,7 @@ void ContactTurning::restore(const StepIsland& island) const {
 /// both ends \param trial with the rotations of mechanisms halfway and at the end
 bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, const StepTrial& trial) const {
   SingleConstraint middle = turned.start, end = turned.start;
-  if (turned.start.has_dry_friction()) {
+  if (turned.start.has_given_bound()) {
     const JointRows& joints = look_.detector().joints();
     joints.update_friction({middle_.view(), trial.at_midpoint.rotation.data()}, middle);
     joints.update_friction({end_.view(), trial.at_end.rotation.data()}, end);
@@ -213,7 +213,7 @@ double ContactTurning::work(const IslandProblem& problem) const {
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];
     const std::size_t place = find(contact);
-    if (place == turned_.size() || contact.has_dry_friction()) continue;
+    if (place == turned_.size() || contact.normals == 0) continue;
     const Turned& turned = turned_[place];
     for (int i = 0; i < contact.rows; ++i) {
       const auto row = static_cast<std::size_t>(i);

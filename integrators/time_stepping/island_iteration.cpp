@@ -111,8 +111,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   const bool joined = parts_->joined.takes(island);
   if (joined &&
       std::any_of(island.constraints.begin(), island.constraints.end(), [&](const Constraint& constraint) {
-        return constraint.type == ConstraintType::joint_friction &&
-               parts_->constraints.detector().joints().depends_on_joint_force(constraint);
+        return parts_->constraints.detector().joints().depends_on_joint_force(constraint);
       })) {
     parts_->errors(in, front).fail_joined(island.constraints);
   }

@@ -81,7 +81,7 @@ void JointStage::start(const StepInput& in, const StepRule& rule, Iteration iter
   trial.expect_impulses();
   joints_.clear(joints_.arrays->dv_contact);
   struck_ = std::any_of(contacts.constraints.begin(), contacts.constraints.end(),
-                        [](const Constraint& constraint) { return !constraint.has_dry_friction(); });
+                        [](const Constraint& constraint) { return constraint.normals > 0; });
   // Mean rows give velocities by their mean with those before: behind a jump they would alternate for ever.
   const bool mean = rule.is_mean() && contacts.problem == nullptr && !may_jump(breaks_, in);
   const bool untouched = contacts.problem == nullptr;
@@ -160,9 +160,7 @@ bool JointStage::react_to_contact(const StepInput& in, JointContacts& contacts, 
       JointResponse response(answer_.rows());
       problem.respond(response);
     }
-    for (std::size_t c = 0; c < contacts.constraints.size(); ++c) {
-      if (contacts.constraints[c].has_dry_friction()) problem.update_bound(c);
-    }
+    for (std::size_t c = 0; c < contacts.constraints.size(); ++c) problem.update_bound(c);
   } else {
     update_friction_rows(contacts, trial);
     JointResponse response(joints_.rows.at_midpoint());

@@ -31,7 +31,7 @@ namespace carom {
 [[nodiscard]] inline bool are_of_corners(const Constraint& one, const Constraint& other, double same_place) {
   constexpr double drift = 1e4;   // places that count as one: corners that meet drift apart by less
   constexpr double depths = 2.0;  // what slides along one edge is behind the other edge by about as much
-  if (other.type != one.type || !may_be_of_corners(one.key, other.key)) return false;
+  if (other.attached != one.attached || !may_be_of_corners(one.key, other.key)) return false;
   const double deep = std::abs(one.gap) + std::abs(other.gap);
   return (lever_of(other) - lever_of(one)).norm() <= drift * same_place + depths * deep;
 }

@@ -52,8 +52,7 @@ bool acts_within(const StepInput& in, const Constraint& contact, const LocatedRu
 /// How many contacts of one body each some bodies have.
 std::size_t count_of(Range bodies, std::span<const Constraint> contacts) {
   const auto is_own = [&](const Constraint& at) {
-    return at.type == ConstraintType::contact && at.bodies == 1 && at.body() >= bodies.begin &&
-           at.body() < bodies.end;
+    return at.bodies == 1 && at.body() >= bodies.begin && at.body() < bodies.end;
   };
   return static_cast<std::size_t>(std::count_if(contacts.begin(), contacts.end(), is_own));
 }

@@ -17,9 +17,8 @@ namespace carom {
 /// others. \param entry what the step did to it \param after velocities of all bodies at the end
 [[nodiscard]] inline ContactMode mode_after(const Constraint& at, const ContactRecord& entry,
                                             const double* after) {
-  constexpr double noise = 1e-12;  // of the velocities along a row
-  const bool is_planar_contact = at.type == ConstraintType::contact && at.rows == 2;
-  if (entry.mode != ContactMode::open || !is_planar_contact) return entry.mode;
+  constexpr double noise = 1e-12;                                          // of the velocities along a row
+  if (entry.mode != ContactMode::open || at.rows != 2) return entry.mode;  // of a contact in the plane
   const auto vanishes = [&](int row) {
     const double velocity = entry.velocity_after[static_cast<std::size_t>(row)];
     return std::abs(velocity) <= noise * at.speed(row, after);

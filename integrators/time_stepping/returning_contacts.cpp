@@ -13,9 +13,8 @@ constexpr double noise = 1e-12;  // of the velocities and their changes that a v
 
 /// Velocity along the normal at the start of a step; 0 where it is rounding, or none.
 double opening(const Constraint& at, const StepInput& in) {
-  if (at.has_dry_friction()) return 0.0;
   const double* const v = in.start.v.data();
-  const double velocity = at.velocity(0, v);
+  const double velocity = at.normal_velocity(v);
   return velocity > noise * at.speed(0, v) ? velocity : 0.0;
 }
 
@@ -80,7 +79,6 @@ bool any_returns(const StepInput& in, std::span<const IslandProblem> problems, c
 
 void allow_return(const StepInput& in, std::span<Constraint> constraints) {
   for (Constraint& at : constraints) {
-    if (at.has_dry_friction()) continue;
     const double left = (1.0 - at.law.normal_restitution) * opening(at, in);
     at.allowed_approach = std::max(at.allowed_approach, left);
   }

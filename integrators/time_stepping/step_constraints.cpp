@@ -140,9 +140,8 @@ void StepConstraints::take_sticking(std::span<Constraint> found) const {
 /// meet
 bool StepConstraints::is_freed(const StepInput& in, bool of_corners, Constraint& constraint) const {
   constexpr double noise = 1e-12;  // of the velocities along a normal
-  if (constraint.has_dry_friction()) return false;
   const double* const v = in.start.v.data();
-  const double rate = constraint.velocity(0, v);
+  const double rate = constraint.normal_velocity(v);
   if (!(rate > rules_.slowest)) return false;
   const bool near = !(constraint.gap < -rules_.rounding), parts = rate > noise * constraint.speed(0, v);
   if (near && parts && (rate > rules_.capture_speed || !lasting_.is_pressed(constraint.key, of_corners)))
@@ -184,7 +183,7 @@ void StepConstraints::find_in(const StepInput& in, Range components, const StepT
   const std::span<Constraint> found = std::span(out).subspan(first);
   take_sticking(found);
   // Friction in joints comes last.
-  if (found.back().has_dry_friction())
+  if (found.back().has_given_bound())
     share_impact_restitution(found, in.start.v.data(), rules_.capture_speed);
   if (resists_rolling(detector_)) add_rolling(first, out);
 }
@@ -194,7 +193,7 @@ void StepConstraints::add_rolling(std::size_t first, ConstraintSet& out) {
   with_rolling_.assign(std::span(out).first(first));
   for (std::size_t i = first; i < out.size(); ++i) {
     with_rolling_.add(out[i]);
-    if (out[i].type == ConstraintType::contact && out[i].law.resists_rolling()) {
+    if (out[i].law.resists_rolling()) {
       Constraint& rolling = with_rolling_.add();
       write_rolling_resistance(out[i], ground_motion_of(detector_, out[i], ground_.start), rolling);
       rolling.drift = {};  // steps take the spins at both ends

@@ -22,8 +22,7 @@ void StepProjection::lower_rebounds(const StepInput& in, std::span<const StepIsl
   by_loads_.resize(in.start.v.size());
   for (const StepIsland& island : islands) {
     for (Constraint& at : island.constraints) {
-      if (at.has_dry_friction()) continue;
-      const double rate = at.velocity(0, in.start.v.data());
+      const double rate = at.normal_velocity(in.start.v.data());
       if (rate > 0.0) allow_return(in, {&at, 1});
       if (!(rate < 0.0) || !(at.gap < -at_rest) || at.law.normal_restitution == 0.0) continue;
       for (int b = 0; b < at.bodies; ++b) change_by_loads(in, at.blocks[static_cast<std::size_t>(b)].body);
@@ -61,7 +60,7 @@ void StepProjection::change_by_loads(const StepInput& in, Index body) {
 void StepProjection::apply(const StepIsland& island, const StepInput& in, StepBalance& balance) {
   const std::span<const Constraint> all = island.constraints;
   const bool joined = std::any_of(all.begin(), all.end(), [](const Constraint& constraint) {
-    return constraint.type == ConstraintType::contact && constraint.bodies > 1;
+    return constraint.bodies > 1 && !constraint.key.is_of_joint();
   });
   if (joined) return project({island.components, all, true}, in, balance);
   const auto component_of = [&](const Constraint& at) { return in.assembly.component_of(at.body()); };

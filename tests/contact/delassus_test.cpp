@@ -333,7 +333,7 @@ TEST(Delassus, FrictionBound) {
   system.add(Particle{.mass = 2.0});
   const Assembly assembly(system);
   SingleConstraint friction;
-  friction.type = ConstraintType::joint_friction;
+  friction.normals = 0;
   friction.add_body(0, 0, 2);
   friction.start_rows(1);
   friction.row(0)[0] = 1.0;

@@ -40,12 +40,12 @@ TEST(IslandPartition, JoinsOverSharedBodies) {
   // 4-1 and 1-0 share a body; 2 stands alone; three bodies 6, 7, 8 are joined by one constraint.
   ConstraintSet list =
       carom_test::set_of({between({2}), between({4, 1}), between({8, 7, 6}), between({7}), between({1, 0})});
-  for (std::size_t i = 0; i < list.size(); ++i) list[i].source = static_cast<Index>(i);
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].of_joint.source = static_cast<Index>(i);
   IslandPartition partition;
   const auto islands = partition.arrange(std::span(list), 9, alone);
   ASSERT_EQ(islands.size(), 3u);
   std::vector<Index> order;
-  for (const Constraint& constraint : list) order.push_back(constraint.source);
+  for (const Constraint& constraint : list) order.push_back(constraint.of_joint.source);
   EXPECT_EQ(order, (std::vector<Index>{1, 4, 0, 2, 3}));
   expect_range(islands[0], 0, 2);
   expect_range(islands[2], 3, 5);

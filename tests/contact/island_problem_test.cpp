@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -25,6 +26,18 @@ System leaning(const Surface& surface) {
       system.add(RigidBody{.mass = {.mass = 1.0, .inertia = 0.1}, .position = {0.0, 2.0 - 1e-9}});
   system.add(Point{.body = body, .position = {1.0, -2.0}});
   return system;
+}
+
+/// A row along the first velocity of a body.
+SingleConstraint row_along_x(Index body, int columns) {
+  SingleConstraint made;
+  made.law = {.friction = 0.5, .normal_restitution = 0.0};
+  made.friction = 0.5;
+  made.add_body(body, 0, columns);
+  made.start_rows(1);
+  std::fill_n(made.row(0), columns, 0.0);
+  made.row(0)[0] = 1.0;
+  return made;
 }
 
 class IslandProblemTest : public testing::Test {
@@ -113,6 +126,44 @@ TEST_F(IslandProblemWithRestitution, StandsInTheVector) {
   (void)solve(one, 0.3, -2.1);
   EXPECT_DOUBLE_EQ(one.problem().vector()[0], -2.1 + 0.5 * -2.0);
   EXPECT_DOUBLE_EQ(one.problem().vector()[1], 0.3 + 0.25 * 0.4);
+}
+
+// Who bounds a tangential row, and whether there is one, is data of the constraints.
+TEST_F(IslandProblemTest, RowsHaveTheSetsThatTheirConstraintsSay) {
+  ASSERT_EQ(contacts_.size(), 1U);
+  SingleConstraint limit = row_along_x(0, 3), attached = limit, in_joint = limit;
+  attached.normals = in_joint.normals = 0;
+  attached.attached = 1;
+  in_joint.of_joint.friction_bound = 4.0;
+  ConstraintSet all;
+  all.add(limit);
+  all.add(contacts_[0]);
+  all.add(attached);
+  all.add(in_joint);
+  const std::array<double, 3> before{};
+  IslandProblem made;
+  made.build(all, before.data());
+  const auto set_of_row = [&](std::size_t c, int row) -> const RowSet& {
+    return made.problem().sets()[static_cast<std::size_t>(made.first_row(c) + row)];
+  };
+  EXPECT_EQ(set_of_row(0, 0).kind, SetKind::half_line);
+  EXPECT_EQ(set_of_row(1, 0).kind, SetKind::half_line);
+  EXPECT_EQ(set_of_row(1, 1).kind, SetKind::bounded_interval);
+  EXPECT_EQ(set_of_row(1, 1).bound, made.first_row(1));
+  EXPECT_EQ(set_of_row(2, 0).kind, SetKind::bounded_interval);
+  EXPECT_EQ(set_of_row(2, 0).bound, made.first_row(1)) << "the normal of the contact before it";
+  EXPECT_EQ(set_of_row(3, 0).kind, SetKind::interval);
+  EXPECT_EQ(set_of_row(3, 0).lower, -2.0);
+  EXPECT_EQ(set_of_row(3, 0).upper, 2.0);
+  made.slide(0, 1.0);
+  EXPECT_EQ(set_of_row(0, 0).kind, SetKind::half_line) << "a limit has no tangent to slide along";
+  all[3].of_joint.friction_bound = 6.0;
+  for (std::size_t c = 0; c < all.size(); ++c) made.update_bound(c);
+  EXPECT_EQ(set_of_row(3, 0).upper, 3.0);
+  EXPECT_EQ(set_of_row(2, 0).bound, made.first_row(1)) << "no given bound";
+  made.slide(3, -1.0);
+  EXPECT_EQ(set_of_row(3, 0).lower, -6.0);
+  EXPECT_EQ(set_of_row(3, 0).upper, -6.0);
 }
 
 }  // namespace

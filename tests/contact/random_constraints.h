@@ -15,7 +15,6 @@ namespace carom_test {
 inline carom::SingleConstraint random_constraint(const carom::Assembly& assembly, int rows,
                                                  std::span<const carom::Index> bodies, Random& random) {
   carom::SingleConstraint made;
-  made.type = rows == 1 ? carom::ConstraintType::limit : carom::ConstraintType::contact;
   made.friction = 0.1;
   made.law = {.friction = 0.1, .normal_restitution = 0.3, .tangential_restitution = 0.3};
   for (const carom::Index body : bodies) {

@@ -168,8 +168,8 @@ TEST(Strike, StepsLeaveSlowContactsAndEventsCloseThem) {
 
 TEST(Strike, FrictionInJointsTakesPartInEventsWhereItFollowsForces) {
   SingleConstraint contact, friction, rolling;
-  friction.type = ConstraintType::joint_friction;
-  rolling.type = ConstraintType::rolling;
+  friction.normals = rolling.normals = 0;
+  rolling.attached = 1;
   for (const ImpactsOfMode& mode : {impacts_of_steps, impacts_of_events}) {
     EXPECT_TRUE(takes_part(contact, mode, false));
     EXPECT_TRUE(takes_part(rolling, mode, false));

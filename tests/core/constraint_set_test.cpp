@@ -118,16 +118,17 @@ TEST(ConstraintSet, ASingleOneKeepsItsNumbersWhicheverItTakes) {
 TEST(ConstraintSet, OneToBeAContactIsAsMadeByDefaultButForWhatContactsWrite) {
   ConstraintSet set;
   Constraint& limit = set.add();
-  limit.type = ConstraintType::limit;
-  limit.source = 7;
-  limit.of_joint = {2.0, 3.0};
+  write(1, 1, {2}, limit);
+  limit.normals = 0;
+  limit.attached = 1;
+  limit.of_joint = {2.0, 3.0, 7};
   limit.drift[0] = limit.surface_velocity[1] = limit.surface_velocity_after[2] = limit.allowed_approach = 1.0;
   for (int round = 0; round < 2; ++round) {
     set.clear();
     const Constraint& at = set.add_contact();
-    EXPECT_EQ(at.type, ConstraintType::contact);
-    EXPECT_EQ(at.source, none);
-    EXPECT_EQ(at.of_joint.length, 1.0);
+    EXPECT_EQ(at.normals, 1);
+    EXPECT_EQ(at.attached, 0);
+    EXPECT_EQ(at.of_joint.source, none);
     EXPECT_EQ(at.of_joint.friction_bound, 0.0);
     EXPECT_EQ(at.allowed_approach, 0.0);
     for (const auto& numbers : {at.drift, at.surface_velocity, at.surface_velocity_after})
@@ -142,7 +143,6 @@ TEST(ConstraintSet, ALimitHasNothingAlongATangent) {
   const std::vector<double> v(velocities, 1.0);
   std::vector<double> load(velocities);
   const auto expect_nothing = [&](Constraint& limit) {
-    limit.type = ConstraintType::limit;
     EXPECT_EQ(limit.tangential_velocity(v.data()), 0.0);
     EXPECT_EQ(limit.tangential_acceleration(v.data()), 0.0);
     EXPECT_EQ(limit.sliding_speed(v.data()), 0.0);
@@ -162,10 +162,9 @@ TEST(ConstraintSet, ALimitHasNothingAlongATangent) {
           kinds_of_bodies[(i + static_cast<Index>(round)) % kinds_of_bodies.size()];
       const bool is_limit = (i + static_cast<Index>(round)) % 2 == 0;
       write(i + 1, is_limit ? 1 : 3, bodies, set.add());
-      if (is_limit) set[i].type = ConstraintType::limit;
     }
     for (Constraint& at : set) {
-      if (at.type != ConstraintType::limit) continue;
+      if (at.tangents() > 0) continue;
       expect_nothing(at);
       SingleConstraint alone(at);
       expect_nothing(alone);

@@ -59,8 +59,8 @@ TEST(JointFriction, ContactsHaveItsCoordinate) {
   detector.joints().find_friction(component, model.state.view(), model.evaluation, found);
   ASSERT_EQ(found.size(), 1u);
   const Constraint& contact = found[0];
-  EXPECT_TRUE(contact.has_dry_friction());
-  EXPECT_EQ(contact.type, ConstraintType::joint_friction);
+  EXPECT_TRUE(contact.has_given_bound());
+  EXPECT_TRUE(contact.key.is_of_joint());
   EXPECT_EQ(contact.rows, 1);
   EXPECT_EQ(contact.of_joint.friction_bound, 0.5);
   EXPECT_EQ(contact.law.sticking_friction(), 1.5);

@@ -49,14 +49,14 @@ TEST(Detector, FindsContactsThenLimits) {
   ConstraintSet found;
   detector.find(0, model.state.view(), model.evaluation, 0.0, found);
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0].type, ConstraintType::contact);
+  EXPECT_FALSE(found[0].key.is_of_joint());
   EXPECT_EQ(detector.name(found[0].key),
             "point 'tip' (feature 0) of rigid body 'flap' on half-plane 'floor'");
-  EXPECT_EQ(found[1].type, ConstraintType::limit);
+  EXPECT_EQ(found[1].tangents(), 0);
   EXPECT_EQ(detector.name(found[1].key), "stop 'stop' (lower)");
   detector.joints().find_friction(0, model.state.view(), model.evaluation, found);
   ASSERT_EQ(found.size(), 3U);
-  EXPECT_EQ(found[2].type, ConstraintType::joint_friction);
+  EXPECT_TRUE(found[2].has_given_bound());
 }
 
 TEST(Detector, PairsGiveTheConstraintsOfFind) {

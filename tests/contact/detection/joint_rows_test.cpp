@@ -63,7 +63,7 @@ TEST(JointRows, LimitsAreFoundWithinTheMargin) {
   EXPECT_EQ(found(infinity).size(), 2U);
   const ConstraintSet near = found(0.2 * arm);
   ASSERT_EQ(near.size(), 1U);
-  EXPECT_EQ(near[0].type, ConstraintType::limit);
+  EXPECT_EQ(near[0].tangents(), 0);
   EXPECT_EQ(near[0].key.a, (FeatureKey{FeatureKey::Owner::joint, flap.stop.serial, 1}));
   EXPECT_EQ(near[0].key.a, near[0].key.b);
   EXPECT_EQ(near[0].rows, 1);
@@ -112,7 +112,7 @@ TEST(JointRows, FrictionIsARowAlongTheCoordinate) {
   ConstraintSet out;
   rows.find_friction(component, model.state.view(), model.evaluation, out);
   ASSERT_EQ(out.size(), 1U);
-  EXPECT_EQ(out[0].type, ConstraintType::joint_friction);
+  EXPECT_TRUE(out[0].has_given_bound());
   EXPECT_DOUBLE_EQ(out[0].of_joint.friction_bound, 0.5 / arm);
   EXPECT_EQ(out[0].law.sticking_friction(), 1.5);
   EXPECT_DOUBLE_EQ(out[0].velocity(0, model.state.v.data()), 2.0 * arm);
@@ -135,14 +135,14 @@ TEST(JointRows, PairsAreTheRowsByNumber) {
   for (const ContactPair& pair : limits) {
     SingleConstraint at;
     rows.constraint(pair.joint_row, model.state.view(), model.evaluation, at);
-    EXPECT_EQ(at.type, ConstraintType::limit);
-    EXPECT_EQ(at.source, pair.joint_row);
+    EXPECT_EQ(at.tangents(), 0);
+    EXPECT_EQ(at.of_joint.source, pair.joint_row);
     EXPECT_EQ(at.body(), pair.body);
     EXPECT_EQ(pair.ground_shape, none);
   }
   SingleConstraint at;
   rows.constraint(friction[0].joint_row, model.state.view(), model.evaluation, at);
-  EXPECT_EQ(at.type, ConstraintType::joint_friction);
+  EXPECT_TRUE(at.has_given_bound());
 }
 
 }  // namespace

@@ -22,7 +22,6 @@ using namespace carom::planar;
 SingleConstraint contact(const Assembly& assembly, std::initializer_list<Index> bodies,
                          double restitution = 0.5) {
   SingleConstraint made;
-  made.type = ConstraintType::limit;
   made.law.normal_restitution = restitution;
   double sign = 1.0;
   for (const Index body : bodies) {
