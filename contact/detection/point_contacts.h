@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -62,10 +63,15 @@ public:
   [[nodiscard]] std::size_t count_pairs(Range components) const;
   /// Appends all pairs of one component, in the order of find().
   void append_pairs(Index component, std::vector<ContactPair>& out) const;
-  /// True of a pair whose point stands off the centre of mass of its body: its gap changes where the body
-  /// turns.
-  [[nodiscard]] bool turns(const ContactPair& pair) const {
-    return pair.feature != none && features_.points()[pair.feature].centre != std::array<double, 3>{};
+  /// Distance of the point of a pair from the centre of mass of its body [m].
+  [[nodiscard]] double arm(const ContactPair& pair) const {
+    if (pair.feature == none) return 0.0;
+    const std::array<double, 3>& centre = features_.points()[pair.feature].centre;
+    return std::hypot(centre[0], centre[1], centre[2]);
+  }
+  /// Radius of the point of a pair [m].
+  [[nodiscard]] double radius(const ContactPair& pair) const {
+    return pair.feature == none ? 0.0 : features_.points()[pair.feature].radius;
   }
   /// Writes the contact of a pair, whatever its gap. \param motion of its shape, null if that is at rest
   void contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,

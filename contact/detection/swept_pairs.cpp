@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace carom {
 
@@ -35,14 +36,7 @@ double change_of_ground(const GroundMotion* from, const GroundMotion* to, double
 
 SweptPairs::SweptPairs(const Assembly& assembly, const Detector& detector, FlatPairs flat)
     : detector_(&detector), between_bodies_(detector.outlines()) {
-  const auto components = static_cast<Index>(assembly.components().size());
-  for (Index component = 0; component < components; ++component) {
-    for (const ContactPair& pair : detector.pairs(component)) {
-      const bool is_flat = !pair.has_outline() && !pair.rolling;
-      const bool turns = pair.joint_row == none && is_flat && detector.points().turns(pair);
-      if (is_flat && (turns || flat == FlatPairs::all)) flat_.push_back(pair);
-    }
-  }
+  list_flat(assembly, flat);
   const BodyOutlines& bodies = detector.outlines().of_bodies();
   boxes_.resize(bodies.list().size());
   for (std::vector<Vec<2>>& vertices : ends_) vertices.resize(bodies.vertices().size());
@@ -50,6 +44,45 @@ SweptPairs::SweptPairs(const Assembly& assembly, const Detector& detector, FlatP
   owners.reserve(bodies.list().size());
   for (const BodyOutline& outline : bodies.list()) owners.push_back(outline.body);
   broad_.reset(owners);
+}
+
+void SweptPairs::list_flat(const Assembly& assembly, FlatPairs which) {
+  const PointContacts& points = detector_->points();
+  const auto components = static_cast<Index>(assembly.components().size());
+  for (Index component = 0; component < components; ++component) {
+    for (const ContactPair& pair : detector_->pairs(component)) {
+      if (pair.has_outline() || pair.rolling) continue;
+      const bool turns = pair.joint_row == none && points.arm(pair) > 0.0;
+      if (turns || which == FlatPairs::all) flat_.push_back(pair);
+    }
+  }
+  const auto name = [](const ContactPair& of) { return std::tuple(of.body, of.ground_shape, of.joint_row); };
+  std::stable_sort(flat_.begin(), flat_.end(),
+                   [&](const ContactPair& a, const ContactPair& b) { return name(a) < name(b); });
+  for (Index i = 0; i < flat_.size(); ++i) {
+    if (i == 0 || name(flat_[i - 1]) != name(flat_[i])) flat_groups_.push_back({{i, i}});
+    FlatGroup& group = flat_groups_.back();
+    group.pairs.end = i + 1;
+    if (flat_[i].joint_row != none) continue;
+    group.arm = std::max(group.arm, points.arm(flat_[i]));
+    group.reach = std::max(group.reach, points.arm(flat_[i]) + points.radius(flat_[i]));
+  }
+}
+
+/// False where the centre of mass is so far from a shape that none of its points comes to it on a path.
+bool SweptPairs::may_close(const StatePath& path, const FlatGroup& group) const {
+  const ContactPair& of = flat_[group.pairs.begin];
+  if (of.joint_row != none || moves(*detector_, of)) return true;
+  const BodySlot slot = detector_->outlines().slots()[of.body];
+  const PathSample from = path.begin(), to = path.end();
+  double fastest = 0.0;
+  for (const PathSample& at : {from, to}) {
+    double speed = std::hypot(at.state.v[slot.v], at.state.v[slot.v + 1]);
+    if (slot.v_size > 2) speed += group.arm * std::abs(at.state.v[slot.v + 2]);
+    fastest = std::max(fastest, speed);
+  }
+  const Gap gap = detector_->outlines().shapes().gap(of.ground_shape, nullptr, from.state.q + slot.q);
+  return !(gap.distance - group.reach > path.length() * fastest);
 }
 
 /// Vertices of all outlines of bodies at both ends of a path.
@@ -134,8 +167,7 @@ double SweptPairs::fastest(const StatePath& path, const SweptPair& of) const {
          change_of_ground(first, last, of.bound.reach);
 }
 
-/// Bounds of a point of a body before a shape on ground, by its contact where the path begins; of limits of
-/// joints none.
+/// Bounds of a point of a body before a shape on ground, or none: of limits of joints.
 void SweptPairs::bound_point(const StatePath& path, SweptPair& of) const {
   of.fastest = never;
   of.sixth = 0.0;
@@ -143,10 +175,7 @@ void SweptPairs::bound_point(const StatePath& path, SweptPair& of) const {
   const PathSample from = path.begin(), to = path.end();
   const BodySlot slot = detector_->outlines().slots()[of.pair.body];
   constexpr Index turning = 2;
-  double arm = 0.0;
-  if (slot.v_size > turning) {
-    for (int i = 0; i < contact_.rows; ++i) arm = std::hypot(arm, contact_.row(i)[turning]);
-  }
+  const double arm = slot.v_size > turning ? detector_->points().arm(of.pair) : 0.0;
   double speed = 0.0;
   for (const PathSample& at : {from, to}) {
     double of_end = std::hypot(at.state.v[slot.v], at.state.v[slot.v + 1]);
@@ -214,7 +243,10 @@ std::span<const NearOutlines> SweptPairs::find_outlines(const StatePath& path) {
 std::span<const SweptPair> SweptPairs::find_pairs(const StatePath& path) {
   const Outlines& outlines = detector_->outlines();
   list_.clear();
-  for (const ContactPair& pair : flat_) add(path, pair, {});
+  for (const FlatGroup& group : flat_groups_) {
+    if (!may_close(path, group)) continue;
+    for (Index i = group.pairs.begin; i < group.pairs.end; ++i) add(path, flat_[i], {});
+  }
   const NearOutlines* last = nullptr;
   for (const NearOutlines& near : outlines_) {
     candidates_.clear();

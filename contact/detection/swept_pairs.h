@@ -76,13 +76,21 @@ private:
   [[nodiscard]] Box<2> box_in(const StatePath& path, Index outline, Index shape) const;
   void place(const StatePath& path);
   void add(const StatePath& path, const ContactPair& pair, const NearOutlines& outlines);
+  /// Points of one body with one shape on ground that has no pieces; or a limit of a joint.
+  struct FlatGroup {
+    Range pairs;
+    double arm = 0.0, reach = 0.0;  // of the points, and with their radius [m]
+  };
+  void list_flat(const Assembly& assembly, FlatPairs which);
+  [[nodiscard]] bool may_close(const StatePath& path, const FlatGroup& group) const;
   [[nodiscard]] double fastest(const StatePath& path, const SweptPair& of) const;
   void bound_point(const StatePath& path, SweptPair& of) const;
 
   const Detector* detector_;
   BodyPairs between_bodies_;
   BroadPhase<2> broad_;
-  std::vector<ContactPair> flat_;            // without outlines
+  std::vector<ContactPair> flat_;  // without outlines
+  std::vector<FlatGroup> flat_groups_;
   std::vector<Box<2>> boxes_;                // swept, of all outlines of bodies
   std::array<std::vector<Vec<2>>, 2> ends_;  // vertices of all outlines of bodies at both ends
   std::vector<Index> near_;                  // pieces on ground

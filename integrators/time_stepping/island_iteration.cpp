@@ -18,7 +18,7 @@ LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in,
   const LoadsKnown known = iterate(island, in, judge);
   if (!contacts_return(in)) return known;
   allow_return(in, island.constraints);
-  judge = FixedPointJudge(parts_->options.tolerance, parts_->options.max_sweeps);
+  judge = FixedPointJudge(parts_->tolerance(in), parts_->options.max_sweeps);
   return iterate(island, in, judge);
 }
 
@@ -98,8 +98,7 @@ bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in, 
   bool any = false;
   for (const Index component : island.components) {
     any =
-        parts_->located.update_jumps(in, parts_->rule, component, local, parts_->options.tolerance, trial) ||
-        any;
+        parts_->located.update_jumps(in, parts_->rule, component, local, parts_->tolerance(in), trial) || any;
   }
   return any;
 }
@@ -152,7 +151,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
 /// component need not be iterated twice for these.
 void IslandIteration::presolve(const StepIsland& island, const StepInput& in) {
   const SweepStages stages = parts_->stages(in, island.components.front());
-  const double tolerance = parts_->options.tolerance;
+  const double tolerance = parts_->tolerance(in);
   int sweeps = 0;
   bool contract = false;
   const auto sweep = [&](bool again) {

@@ -44,10 +44,10 @@ PartedSteps::PartedSteps(const Assembly& assembly, TimeStepper& stepper)
     counts_ = std::make_unique<ClosingCounts>(assembly, stepper.detector(), stepper.options());
 }
 
-void PartedSteps::make_part(double length, double end) {
+void PartedSteps::make_part(const Whole& whole, double length, double end) {
   trial_.state = done_.state;
   trial_.companion = done_.companion;
-  stepper_->step(trial_.state, trial_.companion, length, end, part_);
+  stepper_->step(trial_.state, trial_.companion, length, end, part_, length / whole.step);
   made_ += stepper_->last().passes;
 }
 
@@ -107,24 +107,52 @@ bool PartedSteps::is_followed(const StepClosing& closing) const {
   return closing.is_passage || stepper_->last().flights->follow(closing.pair.pair);
 }
 
+/// Makes a part that ends at a closing. False, and nothing is looked for any more in what is left of the
+/// step, if it has no solution where a longer one has.
+bool PartedSteps::make_early_part(const Whole& whole, double length, double end) {
+  try {
+    make_part(whole, length, end);
+    return true;
+  } catch (const SolverError&) {
+    given_up_ = true;
+    return false;
+  }
+}
+
 /// A part up to the end of the step, or to the first closing: the root of a gap over the length of the part,
 /// by Newton's method, kept between an end at which all is open and one at which it is not. What would leave
 /// a thing on its far side by the end of a part is in it at an earlier end.
 void PartedSteps::make_part_up_to(const Whole& whole, double length) {
   const double begin = done_.state.time;
-  const bool searches = counts_ && may_search();
   double open = begin, closed = never;
   StepClosing found;  // the one that is headed for
   bool ends_there = false;
+  const auto begin_anew = [&](double& end) {
+    open = begin, closed = never;
+    end = whole.end;
+    length = end - begin;
+  };
   for (double end = whole.end;;) {
-    make_part(length, end);
-    const StepClosing first = first_closing(searches);
+    if (end == whole.end || found.is_passage) {
+      make_part(whole, length, end);
+    } else if (!make_early_part(whole, length, end)) {
+      begin_anew(end);
+      continue;
+    }
+    const StepClosing first = first_closing(counts_ && !given_up_ && may_search());
     const bool is_late = first.time < end;
     if (is_late) found = first;
     (is_late ? closed : open) = end;
     // A body may be hit on one way and not on another that is hardly longer.
     if (is_late && is_followed(first) && !(first.time > open)) open = begin;
-    if (!is_late && end < whole.end && !is_followed(found)) closings_->look_at_end(found);
+    if (!is_late && end < whole.end && !is_followed(found)) {
+      closings_->look_at_end(found);
+      if (found.is_refuted()) {
+        closings_->leave_aside(found.pair.pair);
+        begin_anew(end);
+        continue;
+      }
+    }
     ends_there = !is_late && end < whole.end && (found.gap <= found.shallow || is_followed(found));
     if (open == end && (end == whole.end || ends_there)) break;
     double next = is_late ? first.time : end - (found.gap - found.aim()) / found.rate;
@@ -161,6 +189,7 @@ void PartedSteps::step(State& state, Companion& companion, double step, double e
   done_.state = state;
   done_.companion = companion;
   parts_ = made_ = 0;
+  given_up_ = false;
   closings_->begin_step();
   if (counts_) counts_->begin_step();
   const Whole whole{state.time, step, end_time};

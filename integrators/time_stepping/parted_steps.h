@@ -52,7 +52,8 @@ private:
   struct Whole {
     double start, step, end;
   };
-  void make_part(double length, double end);
+  void make_part(const Whole& whole, double length, double end);
+  [[nodiscard]] bool make_early_part(const Whole& whole, double length, double end);
   void make_part_up_to(const Whole& whole, double length);
   [[nodiscard]] StepClosing first_closing(bool searches);
   [[nodiscard]] bool may_search() const;
@@ -66,9 +67,10 @@ private:
   std::unique_ptr<StepClosings> closings_;
   std::unique_ptr<ClosingCounts> counts_;  // null where none is looked for
   Run done_, trial_;
-  State came_;     // the end of a part before bodies are moved out of others
-  int parts_ = 0;  // that ended early
-  int made_ = 0;   // steps of the whole model for the step at hand, with those repeated
+  State came_;             // the end of a part before bodies are moved out of others
+  int parts_ = 0;          // that ended early
+  int made_ = 0;           // steps of the whole model for the step at hand, with those repeated
+  bool given_up_ = false;  // closings are not looked for in what is left of the step
   std::vector<double> accelerations_;
   StepReport part_, sum_;
 };

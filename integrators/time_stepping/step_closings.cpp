@@ -27,7 +27,7 @@ StepClosings::StepClosings(const Assembly& assembly, const Detector& detector, c
       capture_(CaptureRule::of(assembly, options)),
       levels_(detector, roundings_of_depth * rounding_,
               options.impacts == ImpactTimes::located ? Passages::of_far_sides : Passages::all),
-      path_(assembly, detector),
+      paths_(assembly, detector),
       pairs_(assembly, detector, contacts == StepContacts::all ? FlatPairs::all : FlatPairs::turning),
       depths_(detector) {}
 
@@ -62,22 +62,22 @@ double StepClosings::most_approach() const {
   double most = 0.0, of_ground = 0.0;
   Index body = 0;
   for (const BodySlot slot : assembly_->layout()->bodies()) {
-    double moved = std::hypot(path_.displacement(slot.v), path_.displacement(slot.v + 1));
-    if (slot.v_size > 2) moved += levels_.reaches()[body] * std::abs(path_.displacement(slot.v + 2));
+    double moved = std::hypot(paths_.path().displacement(slot.v), paths_.path().displacement(slot.v + 1));
+    if (slot.v_size > 2) moved += levels_.reaches()[body] * std::abs(paths_.path().displacement(slot.v + 2));
     most = std::max(most, moved);
     ++body;
   }
   // Of ground twice what its speed at either end makes of it.
   const Outlines& outlines = detector_->outlines();
   for (const GroundOutline& outline : outlines.on_ground().outlines()) {
-    for (const PathSample& at : {path_.begin(), path_.end()}) {
+    for (const PathSample& at : {paths_.path().begin(), paths_.path().end()}) {
       const GroundMotion* const motion = outlines.shapes().motion(outline.shape, at.places);
       if (motion == nullptr) continue;
       of_ground = std::max(of_ground, std::hypot(motion->velocity[0], motion->velocity[1]) +
                                           outline.reach * std::abs(motion->spin));
     }
   }
-  return 2.0 * (most + path_.length() * of_ground);
+  return 2.0 * (most + paths_.path().length() * of_ground);
 }
 
 StepClosing StepClosings::first(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes) {
@@ -85,22 +85,8 @@ StepClosing StepClosings::first(const StepWay& way, FunctionRef<bool(const Swept
   overlaps_.clear();
   left_out_ = false;
   if (of_contacts_) list_acted(way.acted);
-  const bool by_chords = !of_contacts_ || !way.flights.empty();
-  if (!by_chords) {
-    change_.resize(way.end.v.size());
-    for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = way.end.v[i] - way.after_impacts[i];
-  }
-  if (way.flights.empty()) {
-    path_.set(way.start, way.end, by_chords ? nullptr : change_.data());
-    search(way, closes, first);
-    return first;
-  }
-  const std::size_t corners = way.flights.write_way(way.start, way.end, corners_);
-  for (std::size_t i = 1; i < corners && first.time == never; ++i) {
-    if (!(corners_[i].time > corners_[i - 1].time)) continue;  // as near as times can be told apart
-    path_.set(corners_[i - 1], corners_[i], nullptr);
-    search(way, closes, first);
-  }
+  paths_.begin(way, of_contacts_ ? WayPaths::Form::parabola : WayPaths::Form::chord);
+  while (first.time == never && paths_.next()) search(way, closes, first);
   return first;
 }
 
@@ -114,9 +100,9 @@ bool StepClosings::may_close(const StepWay& way, const SweptPair& pair) const {
 void StepClosings::search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes,
                           StepClosing& first) {
   if (!of_contacts_ && !(most_approach() > levels_.thinnest())) return;
-  const std::span<const NearOutlines> near = pairs_.find_outlines(path_);
+  const std::span<const NearOutlines> near = pairs_.find_outlines(paths_.path());
   if (of_contacts_) {
-    for (const SweptPair& pair : pairs_.find_pairs(path_)) {
+    for (const SweptPair& pair : pairs_.find_pairs(paths_.path())) {
       if (!may_close(way, pair)) continue;
       StepClosing closing;
       closing.pair = pair;
@@ -140,19 +126,19 @@ void StepClosings::search_depths(const StepWay& way, std::span<const NearOutline
     const double allowed = levels_.allowed(of);
     if (allowed == never) continue;
     const double level = gap_at_start(way, of) - allowed;
-    const double time = depths_.first(path_, of, level, fine * allowed, first.time);
+    const double time = depths_.first(paths_.path(), of, level, fine * allowed, first.time);
     if (!(time < first.time)) continue;
     first = {};
     first.time = time;
     first.is_passage = true;
-    first.key = depths_.key_at_begin(path_, of);
+    first.key = depths_.key_at_begin(paths_.path(), of);
   }
 }
 
 /// The gap of two outlines at the start of the way, 0 of such as were apart [m].
 double StepClosings::gap_at_start(const StepWay& way, const NearOutlines& of) {
-  if (path_.begin().state.time == way.start.time) {
-    const double gap = std::min(depths_.gap_at_begin(path_, of), 0.0);
+  if (paths_.path().begin().state.time == way.start.time) {
+    const double gap = std::min(depths_.gap_at_begin(paths_.path(), of), 0.0);
     if (gap < 0.0) overlaps_.emplace_back(of, gap);
     return gap;
   }
@@ -164,8 +150,8 @@ double StepClosings::gap_at_start(const StepWay& way, const NearOutlines& of) {
 /// True if a gap reaches its level on the path before a time.
 bool StepClosings::reaches(StepClosing& closing, double until) {
   const SweptPair& of = closing.pair;
-  const PathSample from = path_.begin(), to = path_.end();
-  const double way = path_.length() * of.fastest;
+  const PathSample from = paths_.path().begin(), to = paths_.path().end();
+  const double way = paths_.path().length() * of.fastest;
   if (of.gap - way > closing.deep) return false;
   const PairGap gap = of.gap_of(*detector_);
   const GapLook begin{from.state.time, true, gap_in(gap, from)};
@@ -179,12 +165,14 @@ bool StepClosings::reaches(StepClosing& closing, double until) {
   rule.fastest = of.fastest;
   rule.sixth = of.sixth;
   rule.until = until;
-  path_.watch(of.moved_by());
-  const double time = predict_closing(path_, gap, rule, begin, end, PathLook::exact);
+  paths_.path().watch(of.moved_by());
+  const double time = predict_closing(paths_.path(), gap, rule, begin, end, PathLook::exact);
   if (!(time < until)) return false;
-  const StepPolynomial::End there = gap_in(gap, path_.sample(time, PathLook::exact));
-  closing.gap = end.gap.value;
-  closing.rate = end.gap.first;
+  const StepPolynomial::End there = gap_in(gap, paths_.path().sample(time, PathLook::exact));
+  const StepPolynomial::End last = gap_in(gap, paths_.to_end().end());
+  closing.gap = last.value;
+  closing.rate = last.first;
+  closing.dips = !(closing.gap < closing.deep);
   if (!counts(closing, there.first)) return false;
   const double aimed = time - (there.value - closing.aim()) / there.first;
   closing.time = there.first < 0.0 && aimed > begin.time ? std::min(aimed, time) : time;
@@ -199,14 +187,15 @@ bool StepClosings::counts(const StepClosing& closing, double rate) {
   if (ends_open) {
     const bool fast = capture_.is_fast(rate);
     if (fast || !closing.pair.pair.has_outline()) return fast;
-    return depths_.gap_at_end(path_, closing.pair.outlines) < closing.deep;
+    return depths_.gap_at_end(paths_.to_end(), closing.pair.outlines) < closing.deep;
   }
   const bool recedes = !(closing.rate < 0.0);
-  return !recedes || closing.pair.gap - closing.gap > capture_.capture_speed * path_.length();
+  const double length = paths_.to_end().end().state.time - paths_.path().begin().state.time;
+  return !recedes || closing.pair.gap - closing.gap > capture_.capture_speed * length;
 }
 
 void StepClosings::look_at_end(StepClosing& closing) {
-  const PathSample end = path_.end();
+  const PathSample end = paths_.to_end().end();
   SingleConstraint contact;
   detector_->contact(closing.pair.pair, end.state, end.evaluation, end.places, contact);
   closing.gap = contact.gap;

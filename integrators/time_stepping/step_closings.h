@@ -18,18 +18,15 @@
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/detection/first_closing.h>
 #include <carom/contact/detection/outline_depth.h>
-#include <carom/contact/detection/state_path.h>
 #include <carom/contact/detection/swept_pairs.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/core/function_ref.h>
-#include <carom/core/state.h>
-#include <carom/integrators/run/companion.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/capture_rule.h>
 #include <carom/integrators/time_stepping/passage_levels.h>
-#include <carom/integrators/time_stepping/step_flights.h>
+#include <carom/integrators/time_stepping/way_paths.h>
 
 #include <cstdint>
 #include <span>
@@ -46,21 +43,14 @@ struct StepClosing {
   ConstraintKey key;        ///< of the contact
   double shallow = 0.0;     ///< a step may end at any gap from this one down [m]
   double deep = 0.0;        ///< to this one [m]
+  bool dips = false;        ///< the gap is open again where the way ends on which it was found
   double gap = 0.0;         ///< where the way ends [m]
   double rate = 0.0;        ///< of the gap, there [m/s]
 
   /// The gap at which a step is to end [m].
   [[nodiscard]] double aim() const { return 0.5 * (shallow + deep); }
-};
-
-/// The way of a step, or of a part of one.
-struct StepWay {
-  const State& start;
-  const State& end;                          ///< before bodies are moved out of others
-  const std::vector<double>& after_impacts;  ///< velocities behind impacts at the start
-  StepFlights& flights;                      ///< of bodies that are hit on it
-  std::span<const std::pair<ConstraintKey, ContactMode>>
-      acted;  ///< contacts of the step, as Companion::modes
+  /// True of a dip that is none where a way ends there: the gap is open and grows.
+  [[nodiscard]] bool is_refuted() const { return dips && gap > shallow && rate > 0.0; }
 };
 
 /// Which contacts are looked for, beside passages.
@@ -117,11 +107,9 @@ private:
   double rounding_;
   CaptureRule capture_;
   PassageLevels levels_;
-  StatePath path_;
+  WayPaths paths_;
   SweptPairs pairs_;
   OutlineDepth depths_;
-  std::vector<double> change_;  // of velocities on the way
-  std::vector<State> corners_;  // of the way
   std::vector<Acted> acted_;
   std::vector<ContactPair> aside_;
   bool left_out_ = false;

@@ -57,10 +57,11 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
   memory_.mean = parts_.rule.is_mean();
 }
 
-void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
+void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report,
+                       double share) {
   const bool known = companion.loads.valid && companion.loads.mean == parts_.rule.is_mean();
   if (!known) evaluate_start(parts_, state, companion);
-  const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step};
+  const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step, share};
   try {
     parts_.flights.clear();
     flown_ = uncoupled_ ? uncoupled_->fly(in, state, companion, report) : Flight::not_free;
@@ -75,7 +76,7 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   companion.loads.valid = false;
   try {
     evaluate_start(parts_, impacts_->start(), companion);
-    step_from({*parts_.assembly, impacts_->start(), companion, step, end_time, in.last_step}, state,
+    step_from({*parts_.assembly, impacts_->start(), companion, step, end_time, in.last_step, share}, state,
               companion, report);
   } catch (...) {
     std::swap(companion.loads, loads_before_);
@@ -178,7 +179,7 @@ void TimeStepper::advance(const StepIsland& island, const StepInput& in) {
     if (!automatic) report.iteration = std::max(report.iteration, parts_.options.iteration);
     return;
   }
-  FixedPointJudge judge(parts_.options.tolerance, parts_.options.max_sweeps);
+  FixedPointJudge judge(parts_.tolerance(in), parts_.options.max_sweeps);
   if (automatic) {
     iterate_automatically(island, in, judge);
   } else {
@@ -207,7 +208,7 @@ void TimeStepper::iterate_automatically(const StepIsland& island, const StepInpu
     if (tried > 0 && leads_astray(iteration, in, island.components, parts_.trial)) continue;
     iteration_.use(iteration);
     for (std::size_t c = 0; tried > 0 && c < kept.size(); ++c) island.constraints[c].take(kept[c]);
-    judge = FixedPointJudge(parts_.options.tolerance, parts_.options.max_sweeps);
+    judge = FixedPointJudge(parts_.tolerance(in), parts_.options.max_sweeps);
     std::optional<LoadsKnown> known;
     try {
       known = iteration_.solve(island, in, judge);

@@ -48,7 +48,9 @@ public:
 
   /// Makes one step of length `step` [s] whose end is called `end_time`. On success state and companion are
   /// those at its end and `report` tells what happened; on an error none of the three has changed.
-  void step(State& state, Companion& companion, double step, double end_time, StepReport& report);
+  /// \param share of the step of which this is a part; its velocities are as exact as those of the whole
+  void step(State& state, Companion& companion, double step, double end_time, StepReport& report,
+            double share = 1.0);
 
   /// Options.
   [[nodiscard]] const TimeStepping& options() const { return parts_.options; }

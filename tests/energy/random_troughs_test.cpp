@@ -62,25 +62,31 @@ System random_trough(std::uint64_t seed) {
 
 class RandomTroughsLong : public ::testing::TestWithParam<const char*> {};
 
-Simulation simulation_of(const System& system, const std::string& mode) {
-  if (mode == "event_driven") return Simulation(system, EventDriven{});
+Simulation simulation_of(const System& system, const std::string& mode, const ImpactRules& rules = {}) {
+  if (mode == "event_driven") return Simulation(system, EventDriven{.impact_rules = rules});
   const ImpactTimes impacts = mode == "located" ? ImpactTimes::located : ImpactTimes::at_step_start;
-  return Simulation(system, TimeStepping{.step = 1e-3, .impacts = impacts});
+  return Simulation(system, TimeStepping{.step = 1e-3, .impact_rules = rules, .impacts = impacts});
+}
+
+/// What impacts and lasting contacts have added, in parts of the energy at the start.
+double gained(const Simulation& simulation) {
+  const ContactCounts& counts = simulation.statistics();
+  return (counts.energy_gained + counts.lasting_gained) / simulation.energy().initial();
 }
 
 TEST_P(RandomTroughsLong, NoneEndsEarlyAndNothingIsShotAway) {
   const std::string mode = GetParam();
-  // Of Newton's law with several contacts, in parts of the energy at the start: 0.02 at most were seen.
+  // Of Newton's law with several contacts: 0.03 at most were seen, but where bodies jam at the angle of
+  // friction, 1 of 3,000 scenes: there e asks for impulses without bound. Limited gains leave none of it.
   constexpr double most_gained = 0.05;
   // Event-driven steps are as exact as their tolerances, whose errors add up: 1.1e-9 was seen.
   const double rounding = mode == "event_driven" ? 1e-8 : round_off;
   // One in a thousand ends early, which fewer than all of the usual ones cannot tell.
   const SeedRange range = seeds_from(40000, 200, 5000, 200);
-  int ended = 0;
+  int ended = 0, jammed = 0;
   for (std::uint64_t seed = range.first; seed < range.last; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Simulation simulation = simulation_of(random_trough(seed), mode);
-    const double energy = simulation.energy().total();
     try {
       simulation.run_until(end);
     } catch (const SolverError& error) {
@@ -88,10 +94,14 @@ TEST_P(RandomTroughsLong, NoneEndsEarlyAndNothingIsShotAway) {
       if (mode != "event_driven") ADD_FAILURE() << error.what();
     }
     EXPECT_LE(std::abs(simulation.energy().residual()), rounding * simulation.energy().scale());
-    const ContactCounts& counts = simulation.statistics();
-    EXPECT_LT(counts.energy_gained + counts.lasting_gained, most_gained * energy);
+    if (gained(simulation) < most_gained) continue;
+    ++jammed;
+    Simulation limited = simulation_of(random_trough(seed), mode, {.energy_gain = EnergyGain::limit});
+    limited.run_until(end);
+    EXPECT_LT(gained(limited), most_gained);
   }
   EXPECT_LE(200 * ended, range.count());  // jams without forces, which are named
+  EXPECT_LE(200 * jammed, range.count());
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, RandomTroughsLong,
