@@ -32,7 +32,7 @@ namespace {
 std::string joint_name(const System& system, const FeatureKey& key) {
   const JointKind* const kind = system.joint_kinds().kind_ever(key.serial);
   if (kind == nullptr) refuse("a", key);
-  const std::string name = system.name(JointId{key.serial, system.token()});
+  std::string name = system.name(JointId{key.serial, system.token()});
   if (key.feature < kind->limits()) return name + " (" + std::string(kind->limit_label(key.feature)) + ")";
   if (key.feature >= kind->limits() + kind->friction_rows()) refuse("a", key);
   return name;

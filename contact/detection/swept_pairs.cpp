@@ -240,12 +240,15 @@ std::span<const NearOutlines> SweptPairs::find_outlines(const StatePath& path) {
   return outlines_;
 }
 
-std::span<const SweptPair> SweptPairs::find_pairs(const StatePath& path) {
+std::span<const SweptPair> SweptPairs::find_pairs(const StatePath& path,
+                                                  FunctionRef<bool(const ContactPair&)> looks) {
   const Outlines& outlines = detector_->outlines();
   list_.clear();
   for (const FlatGroup& group : flat_groups_) {
     if (!may_close(path, group)) continue;
-    for (Index i = group.pairs.begin; i < group.pairs.end; ++i) add(path, flat_[i], {});
+    for (Index i = group.pairs.begin; i < group.pairs.end; ++i) {
+      if (looks(flat_[i])) add(path, flat_[i], {});
+    }
   }
   const NearOutlines* last = nullptr;
   for (const NearOutlines& near : outlines_) {
@@ -262,7 +265,9 @@ std::span<const SweptPair> SweptPairs::find_pairs(const StatePath& path) {
       if (again) continue;
       append_pairs(outlines, near.a, on_ground, candidates_);
     }
-    for (const ContactPair& pair : candidates_) add(path, pair, near);
+    for (const ContactPair& pair : candidates_) {
+      if (looks(pair)) add(path, pair, near);
+    }
   }
   return list_;
 }

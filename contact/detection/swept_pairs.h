@@ -15,6 +15,7 @@
 #include <carom/core/assembly.h>
 #include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
+#include <carom/core/function_ref.h>
 
 #include <array>
 #include <cstdint>
@@ -68,8 +69,9 @@ public:
   /// is not at a finite place. The list is valid until the next call.
   [[nodiscard]] std::span<const NearOutlines> find_outlines(const StatePath& path);
   /// Lists all pairs whose gap may be zero, or less, on the path of the last find_outlines(). The list is
-  /// valid until the next call.
-  [[nodiscard]] std::span<const SweptPair> find_pairs(const StatePath& path);
+  /// valid until the next call. \param looks false of a pair that is left out
+  [[nodiscard]] std::span<const SweptPair> find_pairs(const StatePath& path,
+                                                      FunctionRef<bool(const ContactPair&)> looks);
 
 private:
   [[nodiscard]] Box<2> box_of(const StatePath& path, Index outline) const;

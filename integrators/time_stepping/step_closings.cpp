@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 namespace carom {
@@ -31,12 +32,12 @@ StepClosings::StepClosings(const Assembly& assembly, const Detector& detector, c
       pairs_(assembly, detector, contacts == StepContacts::all ? FlatPairs::all : FlatPairs::turning),
       depths_(detector) {}
 
-/// Lists the contacts of a step, of several entries of one contact the last.
+/// Lists the contacts of a step, by pair or by key.
 void StepClosings::list_acted(std::span<const std::pair<ConstraintKey, ContactMode>> modes) {
   acted_.clear();
   for (const auto& [key, mode] : modes) {
     const std::optional<ContactPair> pair = detector_->outlines().pair_of(key);
-    Acted entry{key, none, none, acted_.size(), mode == ContactMode::open};
+    Acted entry{none, none, key, acted_.size(), mode == ContactMode::open};
     if (pair) {
       entry.key = {};
       entry.feature = pair->feature;
@@ -44,17 +45,19 @@ void StepClosings::list_acted(std::span<const std::pair<ConstraintKey, ContactMo
     }
     acted_.push_back(entry);
   }
+  std::sort(acted_.begin(), acted_.end(), [](const Acted& a, const Acted& b) {
+    return a.name() < b.name() || (a.name() == b.name() && a.place < b.place);
+  });
 }
 
-/// True if a contact acted up to the end of the way.
-bool StepClosings::acts(const SweptPair& pair) const {
-  const bool has_outline = pair.pair.has_outline();
-  const auto is_of = [&](const Acted& entry) {
-    return has_outline ? entry.feature == pair.pair.feature && entry.outline == pair.pair.outline
-                       : entry.outline == none && entry.key == pair.key;
-  };
-  const auto last = std::find_if(acted_.rbegin(), acted_.rend(), is_of);
-  return last != acted_.rend() && !last->open;
+/// True if a contact acted up to the end of the way: of several entries of one the last says so.
+bool StepClosings::acts(Index feature, Index outline, const ConstraintKey& key) const {
+  const Acted of{feature, outline, key, 0, false};
+  const auto behind = std::upper_bound(acted_.begin(), acted_.end(), of,
+                                       [](const Acted& a, const Acted& b) { return a.name() < b.name(); });
+  if (behind == acted_.begin()) return false;
+  const Acted& last = *std::prev(behind);
+  return last.name() == of.name() && !last.open;
 }
 
 /// How much nearer any two things may come on the path [m].
@@ -82,7 +85,6 @@ double StepClosings::most_approach() const {
 
 StepClosing StepClosings::first(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes) {
   StepClosing first;
-  overlaps_.clear();
   left_out_ = false;
   if (of_contacts_) list_acted(way.acted);
   paths_.begin(way, of_contacts_ ? WayPaths::Form::parabola : WayPaths::Form::chord);
@@ -90,42 +92,52 @@ StepClosing StepClosings::first(const StepWay& way, FunctionRef<bool(const Swept
   return first;
 }
 
-/// True of a pair that is open where the path begins, and whose contact does not act on it.
-bool StepClosings::may_close(const StepWay& way, const SweptPair& pair) const {
-  if (!(pair.gap >= -rounding_) || way.flights.follow(pair.pair) || acts(pair)) return false;
-  return std::find(aside_.begin(), aside_.end(), pair.pair) == aside_.end();
+/// True of a pair whose closings may be looked for, as far as that can be told without its contact.
+bool StepClosings::looks_at(const StepWay& way, const ContactPair& pair) const {
+  if (way.flights.follow(pair)) return false;
+  if (pair.has_outline() && acts(pair.feature, pair.outline, {})) return false;
+  return std::find(aside_.begin(), aside_.end(), pair) == aside_.end();
+}
+
+/// Searches the path for contacts that close: such as are open where it begins, and do not act on it.
+void StepClosings::search_contacts(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes,
+                                   StepClosing& first) {
+  const auto looks = [&](const ContactPair& pair) { return looks_at(way, pair); };
+  for (const SweptPair& pair : pairs_.find_pairs(paths_.path(), looks)) {
+    if (!(pair.gap >= -rounding_)) continue;
+    if (!pair.pair.has_outline() && acts(none, none, pair.key)) continue;
+    StepClosing closing;
+    closing.pair = pair;
+    closing.key = pair.key;
+    closing.deep = -rounding_;
+    if (!closes(pair)) {
+      look_at_end(closing);
+      left_out_ = left_out_ || (closing.gap < closing.deep && counts(closing, closing.rate));
+    } else if (reaches(closing, first.time)) {
+      first = closing;
+    }
+  }
 }
 
 /// Searches the path.
 void StepClosings::search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes,
                           StepClosing& first) {
-  if (!of_contacts_ && !(most_approach() > levels_.thinnest())) return;
+  const bool of_depths = most_approach() > levels_.thinnest();
+  if (!of_contacts_ && !of_depths) return;
   const std::span<const NearOutlines> near = pairs_.find_outlines(paths_.path());
-  if (of_contacts_) {
-    for (const SweptPair& pair : pairs_.find_pairs(paths_.path())) {
-      if (!may_close(way, pair)) continue;
-      StepClosing closing;
-      closing.pair = pair;
-      closing.key = pair.key;
-      closing.deep = -rounding_;
-      if (!closes(pair)) {
-        look_at_end(closing);
-        left_out_ = left_out_ || (closing.gap < closing.deep && counts(closing, closing.rate));
-      } else if (reaches(closing, first.time)) {
-        first = closing;
-      }
-    }
-  }
-  search_depths(way, near, first);
+  if (of_contacts_) search_contacts(way, closes, first);
+  if (of_depths) search_depths(near, first);
 }
 
-/// Searches the path for depths.
-void StepClosings::search_depths(const StepWay& way, std::span<const NearOutlines> near, StepClosing& first) {
+/// Searches the path for depths. Two outlines that come nearer by less than is allowed are passed over.
+void StepClosings::search_depths(std::span<const NearOutlines> near, StepClosing& first) {
   constexpr double fine = 0.5;  // of the depth
+  const double approach = most_approach();
   for (const NearOutlines& of : near) {
     const double allowed = levels_.allowed(of);
-    if (allowed == never) continue;
-    const double level = gap_at_start(way, of) - allowed;
+    if (!(approach > allowed)) continue;
+    const double at_start = depths_.gap_at_begin(paths_.whole(), of);
+    const double level = std::min(at_start, 0.0) - allowed;
     const double time = depths_.first(paths_.path(), of, level, fine * allowed, first.time);
     if (!(time < first.time)) continue;
     first = {};
@@ -133,18 +145,6 @@ void StepClosings::search_depths(const StepWay& way, std::span<const NearOutline
     first.is_passage = true;
     first.key = depths_.key_at_begin(paths_.path(), of);
   }
-}
-
-/// The gap of two outlines at the start of the way, 0 of such as were apart [m].
-double StepClosings::gap_at_start(const StepWay& way, const NearOutlines& of) {
-  if (paths_.path().begin().state.time == way.start.time) {
-    const double gap = std::min(depths_.gap_at_begin(paths_.path(), of), 0.0);
-    if (gap < 0.0) overlaps_.emplace_back(of, gap);
-    return gap;
-  }
-  const auto is_of = [&](const auto& entry) { return entry.first == of; };
-  const auto known = std::find_if(overlaps_.begin(), overlaps_.end(), is_of);
-  return known == overlaps_.end() ? 0.0 : known->second;
 }
 
 /// True if a gap reaches its level on the path before a time.
@@ -169,7 +169,7 @@ bool StepClosings::reaches(StepClosing& closing, double until) {
   const double time = predict_closing(paths_.path(), gap, rule, begin, end, PathLook::exact);
   if (!(time < until)) return false;
   const StepPolynomial::End there = gap_in(gap, paths_.path().sample(time, PathLook::exact));
-  const StepPolynomial::End last = gap_in(gap, paths_.to_end().end());
+  const StepPolynomial::End last = gap_in(gap, paths_.whole().end());
   closing.gap = last.value;
   closing.rate = last.first;
   closing.dips = !(closing.gap < closing.deep);
@@ -187,15 +187,15 @@ bool StepClosings::counts(const StepClosing& closing, double rate) {
   if (ends_open) {
     const bool fast = capture_.is_fast(rate);
     if (fast || !closing.pair.pair.has_outline()) return fast;
-    return depths_.gap_at_end(paths_.to_end(), closing.pair.outlines) < closing.deep;
+    return depths_.gap_at_end(paths_.whole(), closing.pair.outlines) < closing.deep;
   }
   const bool recedes = !(closing.rate < 0.0);
-  const double length = paths_.to_end().end().state.time - paths_.path().begin().state.time;
+  const double length = paths_.whole().end().state.time - paths_.path().begin().state.time;
   return !recedes || closing.pair.gap - closing.gap > capture_.capture_speed * length;
 }
 
 void StepClosings::look_at_end(StepClosing& closing) {
-  const PathSample end = paths_.to_end().end();
+  const PathSample end = paths_.whole().end();
   SingleConstraint contact;
   detector_->contact(closing.pair.pair, end.state, end.evaluation, end.places, contact);
   closing.gap = contact.gap;

@@ -30,6 +30,7 @@
 
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -85,19 +86,22 @@ public:
   void look_at_end(StepClosing& closing);
 
 private:
+  // A contact of the step, by its pair or, where that has no outline, by its key.
   struct Acted {
+    Index feature, outline;
     ConstraintKey key;
-    Index feature, outline;  // of a pair with an outline; else none
-    std::size_t place;       // in the list
+    std::size_t place;  // in the list
     bool open;
+
+    [[nodiscard]] auto name() const { return std::tie(outline, feature, key); }
   };
   void list_acted(std::span<const std::pair<ConstraintKey, ContactMode>> modes);
-  [[nodiscard]] bool acts(const SweptPair& pair) const;
+  [[nodiscard]] bool acts(Index feature, Index outline, const ConstraintKey& key) const;
   [[nodiscard]] double most_approach() const;
   void search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, StepClosing& first);
-  void search_depths(const StepWay& way, std::span<const NearOutlines> near, StepClosing& first);
-  [[nodiscard]] double gap_at_start(const StepWay& way, const NearOutlines& of);
-  [[nodiscard]] bool may_close(const StepWay& way, const SweptPair& pair) const;
+  void search_contacts(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, StepClosing& first);
+  void search_depths(std::span<const NearOutlines> near, StepClosing& first);
+  [[nodiscard]] bool looks_at(const StepWay& way, const ContactPair& pair) const;
   [[nodiscard]] bool reaches(StepClosing& closing, double until);
   [[nodiscard]] bool counts(const StepClosing& closing, double rate);
 
@@ -113,7 +117,6 @@ private:
   std::vector<Acted> acted_;
   std::vector<ContactPair> aside_;
   bool left_out_ = false;
-  std::vector<std::pair<NearOutlines, double>> overlaps_;  // gaps < 0 at the start of the way [m]
 };
 
 }  // namespace carom

@@ -51,8 +51,8 @@ public:
   [[nodiscard]] StatePath& path() { return path_; }
   /// The path at hand.
   [[nodiscard]] const StatePath& path() const { return path_; }
-  /// A path that ends where the way does.
-  [[nodiscard]] const StatePath& to_end() const { return bends_ ? whole_ : path_; }
+  /// A path from where the way begins to where it ends.
+  [[nodiscard]] const StatePath& whole() const { return bends_ ? whole_ : path_; }
 
 private:
   StatePath path_, whole_;
