@@ -2,10 +2,12 @@
 
 #include <carom/contact/detection/pair_sides.h>
 #include <carom/contact/detection/swept_pairs.h>
+#include <carom/core/errors.h>
 #include <carom/core/numerics/never.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <tuple>
 
 namespace carom {
@@ -30,6 +32,17 @@ double change_of_ground(const GroundMotion* from, const GroundMotion* to, double
   if (from == nullptr) return 0.0;
   return std::hypot(to->velocity[0] - from->velocity[0], to->velocity[1] - from->velocity[1]) +
          std::abs(to->spin - from->spin) * reach;
+}
+
+/// Demands that a body is at a finite place: comparisons may drop what is no number, and a search among cells
+/// of places would not end there.
+void demand_finite(const StateView& state, const BodySlot& slot, Index body) {
+  for (Index i = 0; i < slot.q_size; ++i) {
+    const double at = state.q[slot.q + i];
+    if (std::isfinite(at)) continue;
+    throw ModelError("broad phase of a path: coordinate " + std::to_string(i) + " of body " +
+                     std::to_string(body) + " is " + std::to_string(at) + ", must be finite");
+  }
 }
 
 }  // namespace
@@ -92,6 +105,7 @@ void SweptPairs::place(const StatePath& path) {
     const BodySlot slot = outlines.slots()[outline.body];
     for (std::size_t end = 0; end < ends_.size(); ++end) {
       const PathSample at = end == 0 ? path.begin() : path.end();
+      demand_finite(at.state, slot, outline.body);
       outlines.of_bodies().place(outline, slot, at.state, at.evaluation,
                                  ends_[end].data() + outline.vertices.begin);
     }

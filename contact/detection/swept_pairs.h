@@ -40,10 +40,12 @@ struct SweptPair {
   BodyPairBound bound;            ///< of a pair with an outline
   std::array<Index, 3> bodies{};  ///< those that move it
   Index body_count = 0;
-  ConstraintKey key;     ///< of its contact where the path begins
-  double gap = 0.0;      ///< there [m]
-  double fastest = 0.0;  ///< bound of the rate of its gap on the path; infinite: not known [m/s]
-  double sixth = 0.0;    ///< of a pair without an outline: ClosingRule::sixth [m/s^6]
+  ConstraintKey key;  ///< of its contact where the path begins
+  double gap = 0.0;   ///< there [m]
+  /// Bound of the rate of its gap on the path, as long as sharp outlines do not overlap: the gap of a corner
+  /// in an outline jumps where another side becomes its own. Infinite: not known [m/s].
+  double fastest = 0.0;
+  double sixth = 0.0;  ///< of a pair without an outline: ClosingRule::sixth [m/s^6]
 
   /// The bodies that move it.
   [[nodiscard]] std::span<const Index> moved_by() const { return {bodies.data(), body_count}; }

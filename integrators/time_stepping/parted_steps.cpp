@@ -20,14 +20,15 @@ StepContacts contacts_looked_for(const Assembly& assembly, const TimeStepper& st
   const Detector& detector = stepper.detector();
   const bool located = stepper.options().impacts == ImpactTimes::located;
   const bool any = detector.outlines().ground_touches() || detector.points().needs_rotations();
-  return located && any && assembly.layout()->dimension() == 2 ? StepContacts::of_turns : StepContacts::none;
+  return located && any && assembly.layout()->dimension() == 2 ? StepContacts::of_turns
+                                                               : StepContacts::nothing;
 }
 
 /// Searches for closings; null where there are none to be found.
 std::unique_ptr<StepClosings> make_closings(const Assembly& assembly, const TimeStepper& stepper) {
   const StepContacts contacts = contacts_looked_for(assembly, stepper);
   const bool of_passages = assembly.layout()->dimension() == 2 && stepper.options().overlaps.never_tunnel;
-  if (contacts == StepContacts::none && !of_passages) return nullptr;
+  if (contacts == StepContacts::nothing && !of_passages) return nullptr;
   auto closings = std::make_unique<StepClosings>(assembly, stepper.detector(), stepper.options(), contacts);
   return closings->finds_any() ? std::move(closings) : nullptr;
 }
@@ -40,7 +41,7 @@ bool PartedSteps::needed(const Assembly& assembly, const TimeStepper& stepper) {
 
 PartedSteps::PartedSteps(const Assembly& assembly, TimeStepper& stepper)
     : stepper_(&stepper), closings_(make_closings(assembly, stepper)) {
-  if (contacts_looked_for(assembly, stepper) != StepContacts::none)
+  if (contacts_looked_for(assembly, stepper) != StepContacts::nothing)
     counts_ = std::make_unique<ClosingCounts>(assembly, stepper.detector(), stepper.options());
 }
 

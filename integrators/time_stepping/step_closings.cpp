@@ -23,7 +23,7 @@ StepClosings::StepClosings(const Assembly& assembly, const Detector& detector, c
                            StepContacts contacts)
     : assembly_(&assembly),
       detector_(&detector),
-      of_contacts_(contacts != StepContacts::none),
+      of_contacts_(contacts != StepContacts::nothing),
       rounding_(gap_rounding(assembly, options)),
       capture_(CaptureRule::of(assembly, options)),
       levels_(detector, roundings_of_depth * rounding_,

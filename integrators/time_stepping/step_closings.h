@@ -56,7 +56,7 @@ struct StepClosing {
 
 /// Which contacts are looked for, beside passages.
 enum class StepContacts : std::uint8_t {
-  none,      ///< none
+  nothing,   ///< none
   of_turns,  ///< such as may open again within the step: of outlines, and of points that turn
   all        ///< also those of other points, and limits of joints
 };
