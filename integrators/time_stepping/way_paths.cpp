@@ -8,7 +8,7 @@ void WayPaths::begin(const StepWay& way, Form form) {
   bends_ = !way.flights.empty();
   corner_ = 0;
   if (bends_) {
-    whole_.set(way.start, way.end, nullptr);
+    set_whole(way);
     count_ = way.flights.write_way(way.start, way.end, corners_);
     return;
   }
@@ -16,6 +16,16 @@ void WayPaths::begin(const StepWay& way, Form form) {
   change_.resize(way.end.v.size());
   for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = way.end.v[i] - way.after_impacts[i];
   path_.set(way.start, way.end, form == Form::chord ? nullptr : change_.data());
+}
+
+/// The path between both ends of a way that has the velocities at its end.
+void WayPaths::set_whole(const StepWay& way) {
+  whole_.set(way.start, way.end, nullptr);
+  change_.resize(way.end.v.size());
+  const double length = whole_.length();
+  for (Index i = 0; i < change_.size(); ++i)
+    change_[i] = 2.0 * (way.end.v[i] - whole_.displacement(i) / length);
+  whole_.set(way.start, way.end, change_.data());
 }
 
 bool WayPaths::next() {

@@ -51,10 +51,12 @@ public:
   [[nodiscard]] StatePath& path() { return path_; }
   /// The path at hand.
   [[nodiscard]] const StatePath& path() const { return path_; }
-  /// A path from where the way begins to where it ends.
+  /// A path from where the way begins to where it ends, with the velocities there.
   [[nodiscard]] const StatePath& whole() const { return bends_ ? whole_ : path_; }
 
 private:
+  void set_whole(const StepWay& way);
+
   StatePath path_, whole_;
   bool bends_ = false;          // bodies are hit on the way
   std::vector<double> change_;  // of velocities on it

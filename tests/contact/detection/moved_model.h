@@ -17,6 +17,9 @@
 
 namespace carom_test {
 
+/// Leaves no pair out.
+inline constexpr auto every_pair = [](const carom::ContactPair&) { return true; };
+
 struct MovedModel {
   /// \param given accelerations, over all velocities; those that are left out are zero
   MovedModel(carom::System system, double span, std::vector<double> given = {}, double begin = 0.0)

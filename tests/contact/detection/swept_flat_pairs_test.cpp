@@ -15,6 +15,7 @@ namespace {
 
 using namespace carom;
 using namespace carom::planar;
+using carom_test::every_pair;
 using carom_test::MovedModel;
 
 constexpr double rounding = 1e-12;  // numbers of about 1
@@ -38,7 +39,7 @@ TEST(SweptFlatPairs, OfPointsThatTurnHaveBoundsOfClosedForm) {
   const MovedModel model(turning_bar_in_a_bearing(false), 1.0);
   SweptPairs pairs(model.assembly, model.detector, FlatPairs::turning);
   (void)pairs.find_outlines(model.path);
-  const std::span<const SweptPair> found = pairs.find_pairs(model.path);
+  const std::span<const SweptPair> found = pairs.find_pairs(model.path, every_pair);
   ASSERT_EQ(found.size(), 1U);  // not the point at the centre
   // Gap 0.3 - 0.2 t + 0.4 sin 3 t: of its rate the bound is a speed, of its sixth derivative 0.4 3^6.
   EXPECT_NEAR(found[0].gap, 0.3, rounding);
@@ -46,7 +47,7 @@ TEST(SweptFlatPairs, OfPointsThatTurnHaveBoundsOfClosedForm) {
   EXPECT_NEAR(found[0].sixth, 0.4 * 729.0, 1e-9);
   SweptPairs all(model.assembly, model.detector, FlatPairs::all);
   (void)all.find_outlines(model.path);
-  EXPECT_EQ(all.find_pairs(model.path).size(), 2U);
+  EXPECT_EQ(all.find_pairs(model.path, every_pair).size(), 2U);
 }
 
 TEST(SweptFlatPairs, LimitsOfJointsAreListedWithoutBoundsWhereAllAre) {
@@ -55,7 +56,7 @@ TEST(SweptFlatPairs, LimitsOfJointsAreListedWithoutBoundsWhereAllAre) {
     SweptPairs pairs(model.assembly, model.detector, which);
     (void)pairs.find_outlines(model.path);
     int limits = 0;
-    for (const SweptPair& of : pairs.find_pairs(model.path)) {
+    for (const SweptPair& of : pairs.find_pairs(model.path, every_pair)) {
       if (of.pair.joint_row == none) continue;
       ++limits;
       EXPECT_EQ(of.fastest, never);

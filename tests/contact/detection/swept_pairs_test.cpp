@@ -26,6 +26,7 @@ using namespace carom;
 using namespace carom::planar;
 using carom_test::add_outline;
 using carom_test::body_outline;
+using carom_test::every_pair;
 using carom_test::ground_outline;
 using carom_test::MovedModel;
 using carom_test::OwnedOutline;
@@ -126,7 +127,7 @@ TEST(SweptPairs, ListAllThatCloseAtAnyTime) {
     const MovedModel model = random_model(random);
     SweptPairs pairs(model.assembly, model.detector, FlatPairs::all);
     ASSERT_FALSE(pairs.find_outlines(model.path).empty());  // the drum is everywhere
-    const std::span<const SweptPair> found = pairs.find_pairs(model.path);
+    const std::span<const SweptPair> found = pairs.find_pairs(model.path, every_pair);
     const std::vector<ContactPair> every = all_pairs(model);
     const std::vector<std::vector<double>> gaps = gaps_of(model, every);
     for (std::size_t i = 0; i < every.size(); ++i) {
@@ -200,7 +201,7 @@ TEST(SweptPairs, RatesStayBelowTheirBoundsUnlessSharpOutlinesOverlap) {
     const MovedModel model = random_model(random);
     SweptPairs pairs(model.assembly, model.detector, FlatPairs::all);
     (void)pairs.find_outlines(model.path);
-    const std::span<const SweptPair> found = pairs.find_pairs(model.path);
+    const std::span<const SweptPair> found = pairs.find_pairs(model.path, every_pair);
     std::vector<ContactPair> listed;
     for (const SweptPair& of : found) listed.push_back(of.pair);
     const std::vector<std::vector<double>> gaps = gaps_of(model, listed);
@@ -233,7 +234,7 @@ TEST(SweptPairs, TellKeysGapsAndBodiesWhereThePathBegins) {
   SweptPairs pairs(model.assembly, model.detector, FlatPairs::all);
   (void)pairs.find_outlines(model.path);
   int of_two = 0;
-  for (const SweptPair& of : pairs.find_pairs(model.path)) {
+  for (const SweptPair& of : pairs.find_pairs(model.path, every_pair)) {
     const PathSample at = model.path.begin();
     SingleConstraint contact;
     model.detector.contact(of.pair, at.state, at.evaluation, at.places, contact);
@@ -269,7 +270,8 @@ TEST(SweptPairs, DoNotListWhatIsFartherThanTheWay) {
     SweptPairs pairs(model.assembly, model.detector, FlatPairs::all);
     (void)pairs.find_outlines(model.path);
     int with_floor = 0, between = 0;
-    for (const SweptPair& of : pairs.find_pairs(model.path)) ++(of.pair.has_outline() ? between : with_floor);
+    for (const SweptPair& of : pairs.find_pairs(model.path, every_pair))
+      ++(of.pair.has_outline() ? between : with_floor);
     EXPECT_EQ(with_floor, more > 0.0 ? 0 : 1);
     EXPECT_EQ(between, more > 0.0 ? 0 : 1);
   }
@@ -290,7 +292,7 @@ TEST(SweptPairs, OutlinesThatPassSideBySideAreListedWhereTheirBoxesOverlap) {
     const MovedModel model(std::move(system), 1.0);
     SweptPairs pairs(model.assembly, model.detector, FlatPairs::all);
     EXPECT_EQ(pairs.find_outlines(model.path).size(), more > 0.0 ? 0U : 1U);
-    EXPECT_EQ(pairs.find_pairs(model.path).size(), more > 0.0 ? 0U : 1U);
+    EXPECT_EQ(pairs.find_pairs(model.path, every_pair).size(), more > 0.0 ? 0U : 1U);
   }
 }
 

@@ -48,7 +48,7 @@ TEST(WayPaths, OnWhichNothingIsHitAreOne) {
     ASSERT_TRUE(paths.next());
     EXPECT_EQ(paths.path().begin().state.time, model.start.time);
     EXPECT_EQ(paths.path().end().state.time, model.end.time);
-    EXPECT_EQ(&paths.to_end(), &paths.path());
+    EXPECT_EQ(&paths.whole(), &paths.path());
     EXPECT_FALSE(paths.next());
   }
 }
@@ -139,7 +139,7 @@ TEST(WayPaths, OnWhichABodyIsHitAreChordsBetweenItsImpacts) {
   EXPECT_FALSE(paths.next());
 }
 
-TEST(WayPaths, ToTheEndLeadThereFromBothChords) {
+TEST(WayPaths, TheWholeOneEndsAsTheWayDoes) {
   constexpr double step = 0.2;
   SteppedDiscs discs(0.4, 0.5, step);
   WayPaths paths(discs.assembly, discs.stepper.detector());
@@ -147,10 +147,13 @@ TEST(WayPaths, ToTheEndLeadThereFromBothChords) {
   int count = 0;
   while (paths.next()) {
     ++count;
-    EXPECT_NE(&paths.to_end(), &paths.path());
-    EXPECT_EQ(paths.to_end().end().state.time, step);
+    EXPECT_NE(&paths.whole(), &paths.path());
+    EXPECT_EQ(paths.whole().end().state.time, step);
     for (std::size_t i = 0; i < discs.end.q.size(); ++i)
-      EXPECT_EQ(paths.to_end().end().state.q[i], discs.end.q[i]);
+      EXPECT_EQ(paths.whole().end().state.q[i], discs.end.q[i]);
+    // Of 10 m/s, from displacements over the length.
+    for (std::size_t i = 0; i < discs.end.v.size(); ++i)
+      EXPECT_NEAR(paths.whole().end().state.v[i], discs.end.v[i], 1e-13);
   }
   EXPECT_EQ(count, 2);
 }
