@@ -46,6 +46,7 @@ PartedSteps::PartedSteps(const Assembly& assembly, TimeStepper& stepper)
 }
 
 void PartedSteps::make_part(const Whole& whole, double length, double end) {
+  is_parted_ = is_parted_ || length < whole.step;
   trial_.state = done_.state;
   trial_.companion = done_.companion;
   stepper_->step(trial_.state, trial_.companion, length, end, part_, length / whole.step);
@@ -108,39 +109,18 @@ bool PartedSteps::is_followed(const StepClosing& closing) const {
   return closing.is_passage || stepper_->last().flights->follow(closing.pair.pair);
 }
 
-/// Makes a part that ends at a closing. False, and nothing is looked for any more in what is left of the
-/// step, if it has no solution where a longer one has.
-bool PartedSteps::make_early_part(const Whole& whole, double length, double end) {
-  try {
-    make_part(whole, length, end);
-    return true;
-  } catch (const SolverError&) {
-    given_up_ = true;
-    return false;
-  }
-}
-
 /// A part up to the end of the step, or to the first closing: the root of a gap over the length of the part,
 /// by Newton's method, kept between an end at which all is open and one at which it is not. What would leave
 /// a thing on its far side by the end of a part is in it at an earlier end.
 void PartedSteps::make_part_up_to(const Whole& whole, double length) {
   const double begin = done_.state.time;
+  const bool searches = counts_ && searches_ && may_search();
   double open = begin, closed = never;
   StepClosing found;  // the one that is headed for
   bool ends_there = false;
-  const auto begin_anew = [&](double& end) {
-    open = begin, closed = never;
-    end = whole.end;
-    length = end - begin;
-  };
   for (double end = whole.end;;) {
-    if (end == whole.end || found.is_passage) {
-      make_part(whole, length, end);
-    } else if (!make_early_part(whole, length, end)) {
-      begin_anew(end);
-      continue;
-    }
-    const StepClosing first = first_closing(counts_ && !given_up_ && may_search());
+    make_part(whole, length, end);
+    const StepClosing first = first_closing(searches);
     const bool is_late = first.time < end;
     if (is_late) found = first;
     (is_late ? closed : open) = end;
@@ -150,7 +130,9 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
       closings_->look_at_end(found);
       if (found.is_refuted()) {
         closings_->leave_aside(found.pair.pair);
-        begin_anew(end);
+        open = begin, closed = never;
+        end = whole.end;
+        length = end - begin;
         continue;
       }
     }
@@ -186,23 +168,36 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
   throw RunError(message, std::move(failure));
 }
 
-void PartedSteps::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
+/// Makes a step, part by part. \param searches for closings
+void PartedSteps::make_parts(const State& state, const Companion& companion, const Whole& whole,
+                             bool searches) {
   done_.state = state;
   done_.companion = companion;
-  parts_ = made_ = 0;
-  given_up_ = false;
+  parts_ = 0;
+  searches_ = searches;
   closings_->begin_step();
   if (counts_) counts_->begin_step();
-  const Whole whole{state.time, step, end_time};
-  for (double length = step; done_.state.time < end_time; length = end_time - done_.state.time) {
+  for (double length = whole.step; done_.state.time < whole.end; length = whole.end - done_.state.time) {
     make_part_up_to(whole, length);
-    if (done_.state.time == state.time) {
+    if (done_.state.time == whole.start) {
       std::swap(sum_, part_);
     } else {
       add(part_, sum_);
     }
     std::swap(done_, trial_);
     keep_impulses();
+  }
+}
+
+void PartedSteps::step(State& state, Companion& companion, double step, double end_time, StepReport& report) {
+  const Whole whole{state.time, step, end_time};
+  made_ = 0;
+  is_parted_ = false;
+  try {
+    make_parts(state, companion, whole, true);
+  } catch (const SolverError&) {
+    if (!is_parted_ || parts_ > most_parts) throw;
+    make_parts(state, companion, whole, false);
   }
   sum_.step = step;
   sum_.steps_made = made_;

@@ -10,6 +10,9 @@
 /// each (steps_per_step) n steps take at most (n + 50) s and one search, if one by itself takes
 /// no more than s. What is not searched for any more acts when the next step begins, by the same laws, and is
 /// counted (ContactCounts::cut_sequences); only what would pass through anything parts the step then.
+///
+/// A step whose parts have no solution is made again, whole, without closings: these are counted in the same
+/// way. It fails only where the whole one has none either.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
@@ -53,8 +56,8 @@ private:
     double start, step, end;
   };
   void make_part(const Whole& whole, double length, double end);
-  [[nodiscard]] bool make_early_part(const Whole& whole, double length, double end);
   void make_part_up_to(const Whole& whole, double length);
+  void make_parts(const State& state, const Companion& companion, const Whole& whole, bool searches);
   [[nodiscard]] StepClosing first_closing(bool searches);
   [[nodiscard]] bool may_search() const;
   [[nodiscard]] const State& after_impacts() const;
@@ -67,10 +70,11 @@ private:
   std::unique_ptr<StepClosings> closings_;
   std::unique_ptr<ClosingCounts> counts_;  // null where none is looked for
   Run done_, trial_;
-  State came_;             // the end of a part before bodies are moved out of others
-  int parts_ = 0;          // that ended early
-  int made_ = 0;           // steps of the whole model for the step at hand, with those repeated
-  bool given_up_ = false;  // closings are not looked for in what is left of the step
+  State came_;              // the end of a part before bodies are moved out of others
+  int parts_ = 0;           // that ended early
+  int made_ = 0;            // steps of the whole model for the step at hand, with those repeated
+  bool searches_ = true;    // for closings, in the step at hand
+  bool is_parted_ = false;  // some of it was made that is shorter
   std::vector<double> accelerations_;
   StepReport part_, sum_;
 };
