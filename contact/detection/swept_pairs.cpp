@@ -34,6 +34,18 @@ double change_of_ground(const GroundMotion* from, const GroundMotion* to, double
          std::abs(to->spin - from->spin) * reach;
 }
 
+constexpr Index turning = 2;  // place of the spin among the velocities of a body that turns
+
+/// The most speed of the points of a body at a distance from its centre of mass: where the path begins or
+/// ends.
+double most_speed(const StatePath& path, const BodySlot& slot, double arm) {
+  const auto at_end = [&](const PathSample& at) {
+    const double* const v = at.state.v + slot.v;
+    return std::hypot(v[0], v[1]) + (slot.v_size > turning ? arm * std::abs(v[turning]) : 0.0);
+  };
+  return std::max(at_end(path.begin()), at_end(path.end()));
+}
+
 /// Demands that a body is at a finite place: comparisons may drop what is no number, and a search among cells
 /// of places would not end there.
 void demand_finite(const StateView& state, const BodySlot& slot, Index body) {
@@ -87,15 +99,9 @@ bool SweptPairs::may_close(const StatePath& path, const FlatGroup& group) const 
   const ContactPair& of = flat_[group.pairs.begin];
   if (of.joint_row != none || moves(*detector_, of)) return true;
   const BodySlot slot = detector_->outlines().slots()[of.body];
-  const PathSample from = path.begin(), to = path.end();
-  double fastest = 0.0;
-  for (const PathSample& at : {from, to}) {
-    double speed = std::hypot(at.state.v[slot.v], at.state.v[slot.v + 1]);
-    if (slot.v_size > 2) speed += group.arm * std::abs(at.state.v[slot.v + 2]);
-    fastest = std::max(fastest, speed);
-  }
-  const Gap gap = detector_->outlines().shapes().gap(of.ground_shape, nullptr, from.state.q + slot.q);
-  return !(gap.distance - group.reach > path.length() * fastest);
+  const double* const centre = path.begin().state.q + slot.q;
+  const Gap gap = detector_->outlines().shapes().gap(of.ground_shape, nullptr, centre);
+  return !(gap.distance - group.reach > path.length() * most_speed(path, slot, group.arm));
 }
 
 /// Vertices of all outlines of bodies at both ends of a path.
@@ -181,27 +187,18 @@ double SweptPairs::fastest(const StatePath& path, const SweptPair& of) const {
          change_of_ground(first, last, of.bound.reach);
 }
 
-/// Bounds of a point of a body before a shape on ground, or none: of limits of joints.
+/// Bounds of the gap of a point of a body and a shape on ground. Of a limit of a joint nothing is known.
 void SweptPairs::bound_point(const StatePath& path, SweptPair& of) const {
   of.fastest = never;
   of.sixth = 0.0;
-  if (of.pair.joint_row != none) return;
-  const PathSample from = path.begin(), to = path.end();
+  if (of.pair.joint_row != none || moves(*detector_, of.pair)) return;
   const BodySlot slot = detector_->outlines().slots()[of.pair.body];
-  constexpr Index turning = 2;
   const double arm = slot.v_size > turning ? detector_->points().arm(of.pair) : 0.0;
-  double speed = 0.0;
-  for (const PathSample& at : {from, to}) {
-    double of_end = std::hypot(at.state.v[slot.v], at.state.v[slot.v + 1]);
-    if (slot.v_size > turning) of_end += arm * std::abs(at.state.v[slot.v + turning]);
-    speed = std::max(speed, of_end);
-  }
-  if (moves(*detector_, of.pair)) return;
-  of.fastest = speed;
+  of.fastest = most_speed(path, slot, arm);
   if (arm == 0.0) return;
   constexpr int order = 6;
-  const double spin =
-      std::max(std::abs(from.state.v[slot.v + turning]), std::abs(to.state.v[slot.v + turning]));
+  const double spin = std::max(std::abs(path.begin().state.v[slot.v + turning]),
+                               std::abs(path.end().state.v[slot.v + turning]));
   of.sixth = arm * std::pow(spin, order);
 }
 

@@ -114,6 +114,7 @@ bool PartedSteps::is_followed(const StepClosing& closing) const {
 /// a thing on its far side by the end of a part is in it at an earlier end.
 void PartedSteps::make_part_up_to(const Whole& whole, double length) {
   const double begin = done_.state.time;
+  closings_->begin_part();
   const bool searches = counts_ && searches_ && may_search();
   double open = begin, closed = never;
   StepClosing found;  // the one that is headed for
@@ -129,7 +130,7 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
     if (!is_late && end < whole.end && !is_followed(found)) {
       closings_->look_at_end(found);
       if (found.is_refuted()) {
-        closings_->leave_aside(found.pair.pair);
+        closings_->refute(found.pair.pair);
         open = begin, closed = never;
         end = whole.end;
         length = end - begin;

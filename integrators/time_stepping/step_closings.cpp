@@ -96,7 +96,10 @@ StepClosing StepClosings::first(const StepWay& way, FunctionRef<bool(const Swept
 bool StepClosings::looks_at(const StepWay& way, const ContactPair& pair) const {
   if (way.flights.follow(pair)) return false;
   if (pair.has_outline() && acts(pair.feature, pair.outline, {})) return false;
-  return std::find(aside_.begin(), aside_.end(), pair) == aside_.end();
+  const auto lists = [&](const std::vector<ContactPair>& pairs) {
+    return std::find(pairs.begin(), pairs.end(), pair) != pairs.end();
+  };
+  return !lists(aside_) && !lists(refuted_);
 }
 
 /// Searches the path for contacts that close: such as are open where it begins, and do not act on it.
@@ -122,17 +125,17 @@ void StepClosings::search_contacts(const StepWay& way, FunctionRef<bool(const Sw
 /// Searches the path.
 void StepClosings::search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes,
                           StepClosing& first) {
-  const bool of_depths = most_approach() > levels_.thinnest();
+  const double approach = most_approach();
+  const bool of_depths = approach > levels_.thinnest();
   if (!of_contacts_ && !of_depths) return;
   const std::span<const NearOutlines> near = pairs_.find_outlines(paths_.path());
   if (of_contacts_) search_contacts(way, closes, first);
-  if (of_depths) search_depths(near, first);
+  if (of_depths) search_depths(near, approach, first);
 }
 
 /// Searches the path for depths. Two outlines that come nearer by less than is allowed are passed over.
-void StepClosings::search_depths(std::span<const NearOutlines> near, StepClosing& first) {
+void StepClosings::search_depths(std::span<const NearOutlines> near, double approach, StepClosing& first) {
   constexpr double fine = 0.5;  // of the depth
-  const double approach = most_approach();
   for (const NearOutlines& of : near) {
     const double allowed = levels_.allowed(of);
     if (!(approach > allowed)) continue;

@@ -77,6 +77,10 @@ public:
   /// Leaves the closings of a pair aside in the rest of the step: it is none of those that the detector
   /// finds.
   void leave_aside(const ContactPair& pair) { aside_.push_back(pair); }
+  /// A part of the step begins: nothing is refuted any more.
+  void begin_part() { refuted_.clear(); }
+  /// Leaves the closings of a pair aside in the part at hand: a shorter one has shown that there is none.
+  void refute(const ContactPair& pair) { refuted_.push_back(pair); }
   /// The first closing on a way. \param closes whether a contact is looked for that closes; of others nothing
   /// but their passages is
   [[nodiscard]] StepClosing first(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes);
@@ -100,7 +104,7 @@ private:
   [[nodiscard]] double most_approach() const;
   void search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, StepClosing& first);
   void search_contacts(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, StepClosing& first);
-  void search_depths(std::span<const NearOutlines> near, StepClosing& first);
+  void search_depths(std::span<const NearOutlines> near, double approach, StepClosing& first);
   [[nodiscard]] bool looks_at(const StepWay& way, const ContactPair& pair) const;
   [[nodiscard]] bool reaches(StepClosing& closing, double until);
   [[nodiscard]] bool counts(const StepClosing& closing, double rate);
@@ -115,7 +119,7 @@ private:
   SweptPairs pairs_;
   OutlineDepth depths_;
   std::vector<Acted> acted_;
-  std::vector<ContactPair> aside_;
+  std::vector<ContactPair> aside_, refuted_;
   bool left_out_ = false;
 };
 

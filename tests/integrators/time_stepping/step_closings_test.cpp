@@ -136,6 +136,33 @@ TEST_P(StepClosingsOnFloors, AreLeftAsideForARestOfAStep) {
   EXPECT_EQ(way.first().time, closing.time);
 }
 
+TEST_P(StepClosingsOnFloors, AreRefutedForOnePartAlone) {
+  Way way(over_floor(GetParam(), 0.3, 1.0), 0.25, {0.0, -g});
+  const StepClosing closing = way.first();
+  ASSERT_LT(closing.time, never);
+  way.closings.refute(closing.pair.pair);
+  EXPECT_TRUE(way.first().time == never || way.first().is_passage);
+  way.closings.begin_part();
+  EXPECT_EQ(way.first().time, closing.time);
+}
+
+TEST(StepClosing, IsRefutedByAGapThatIsOpenAndGrows) {
+  StepClosing dip;
+  dip.dips = true;
+  dip.gap = 1e-3;
+  dip.rate = 0.1;
+  EXPECT_TRUE(dip.is_refuted());
+  dip.rate = -0.1;
+  EXPECT_FALSE(dip.is_refuted());
+  dip.rate = 0.1;
+  dip.gap = -1e-3;
+  EXPECT_FALSE(dip.is_refuted());
+  // What was closed at the end of the longer step closes somewhere before.
+  dip.gap = 1e-3;
+  dip.dips = false;
+  EXPECT_FALSE(dip.is_refuted());
+}
+
 TEST_P(StepClosingsOnFloors, ThatAreNotLookedForAreLeftOut) {
   Way way(over_floor(GetParam(), 0.3, 1.0), 0.25, {0.0, -g});
   const StepClosing none = way.first(false);
