@@ -34,14 +34,14 @@ double change_of_ground(const GroundMotion* from, const GroundMotion* to, double
          std::abs(to->spin - from->spin) * reach;
 }
 
-constexpr Index turning = 2;  // place of the spin among the velocities of a body that turns
+constexpr Index spin_place = 2;  // place of the spin among the velocities of a body that turns
 
 /// The most speed of the points of a body at a distance from its centre of mass: where the path begins or
 /// ends.
 double most_speed(const StatePath& path, const BodySlot& slot, double arm) {
   const auto at_end = [&](const PathSample& at) {
     const double* const v = at.state.v + slot.v;
-    return std::hypot(v[0], v[1]) + (slot.v_size > turning ? arm * std::abs(v[turning]) : 0.0);
+    return std::hypot(v[0], v[1]) + (slot.v_size > spin_place ? arm * std::abs(v[spin_place]) : 0.0);
   };
   return std::max(at_end(path.begin()), at_end(path.end()));
 }
@@ -193,12 +193,12 @@ void SweptPairs::bound_point(const StatePath& path, SweptPair& of) const {
   of.sixth = 0.0;
   if (of.pair.joint_row != none || moves(*detector_, of.pair)) return;
   const BodySlot slot = detector_->outlines().slots()[of.pair.body];
-  const double arm = slot.v_size > turning ? detector_->points().arm(of.pair) : 0.0;
+  const double arm = slot.v_size > spin_place ? detector_->points().arm(of.pair) : 0.0;
   of.fastest = most_speed(path, slot, arm);
   if (arm == 0.0) return;
   constexpr int order = 6;
-  const double spin = std::max(std::abs(path.begin().state.v[slot.v + turning]),
-                               std::abs(path.end().state.v[slot.v + turning]));
+  const double spin = std::max(std::abs(path.begin().state.v[slot.v + spin_place]),
+                               std::abs(path.end().state.v[slot.v + spin_place]));
   of.sixth = arm * std::pow(spin, order);
 }
 
