@@ -32,12 +32,16 @@ public:
   /// stop shrinking: forward error of a few roundings for cond(A) below about 1e14.
   void solve(std::span<const double> b, std::span<double> x);
 
+  /// x (columns) with least |A x - b| (rows), as the factors alone give it: for whoever corrects x against
+  /// another matrix, near to A.
+  void solve_by_factors(std::span<const double> b, std::span<double> x);
+
   /// Basis vector number `index` < columns - rank of the null space of A, not normalised.
   void null_vector(std::size_t index, std::span<double> x);
 
 private:
-  // Longest of the columns left, and the square of its length.
-  [[nodiscard]] std::pair<std::size_t, double> longest_column(std::size_t k) const;
+  // Longest of the columns left.
+  [[nodiscard]] std::size_t longest_column(std::size_t k) const;
   // Reflector I - tau v v^T with v_k = 1, the rest of v stored below the diagonal.
   void reflect(std::size_t k, double length);
   void solve_once(std::span<double> x);
@@ -47,6 +51,10 @@ private:
     double tau = 0.0;       // of the reflector at its place
     double scale = 1.0;     // of the column of A, wherever it went
     std::size_t place = 0;  // column of A that stands here
+    double square = 0.0;    // of the length of what is left of it,
+    double measured = 0.0;  // and when it was last measured
+
+    void measure(const double* column, std::size_t size);
   };
   std::size_t rows_ = 0, columns_ = 0, rank_ = 0;
   std::vector<double> a_, r_, work_, correction_;

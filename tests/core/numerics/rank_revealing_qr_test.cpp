@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -94,6 +95,69 @@ TEST(RankRevealingQr, FindsTheRankWhateverTheUnits) {
       const auto zero = product(a, null, n);
       for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(zero[i], 0.0, 1e-13 * size);
     }
+  }
+}
+
+TEST(RankRevealingQr, FindsTheRankOfLargeProducts) {
+  // Lengths of columns are brought down from row to row over all pivots: rounding of that must not hide where
+  // the rank ends, nor make one up. Integers: the product of n x r and r x n is exact, and has rank r.
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    const auto n = static_cast<std::size_t>(random.integer(30, 90));
+    const auto r = static_cast<std::size_t>(random.integer(1, static_cast<int>(n)));
+    std::vector<double> left(n * r), right(r * n), a(n * n), y(n), x(n);
+    for (double& value : left) value = random.integer(-9, 9);
+    for (double& value : right) value = random.integer(-9, 9);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        for (std::size_t k = 0; k < r; ++k) a[i * n + j] += left[i * r + k] * right[k * n + j];
+      }
+    }
+    RankRevealingQr qr;
+    qr.factor(a, n, n, 1e-12);
+    EXPECT_EQ(qr.rank(), r) << "seed " << seed << ", n = " << n;
+    for (double& value : y) value = random.integer(-99, 99);
+    const auto b = product(a, y, n);
+    qr.solve(b, x);
+    double size = 0.0;
+    for (const double value : b) size = std::max(size, std::abs(value));
+    const auto reached = product(a, x, n);
+    // Some n roundings of the largest term of the product.
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(reached[i], b[i], 1e-12 * size) << "seed " << seed;
+  }
+}
+
+TEST(RankRevealingQr, PivotsAreThoseOfMeasuredLengths) {
+  // Columns of very different lengths of what is left (a graded triangle): each pivot is the longest column.
+  constexpr std::size_t n = 40;
+  Random random(1);
+  std::vector<double> a(n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i; j < n; ++j)
+      a[i * n + j] = std::exp2(-static_cast<double>(i)) * random.uniform(0.5, 1.0);
+  }
+  RankRevealingQr qr;
+  qr.factor(a, n, n, 1e-14);
+  EXPECT_EQ(qr.rank(), n);
+  // Pivots fall by about a half each: the last one over the first is 2^-39 to a factor of n.
+  EXPECT_LT(qr.reciprocal_condition(), std::exp2(-39) * n);
+  EXPECT_GT(qr.reciprocal_condition(), std::exp2(-39) / n);
+}
+
+TEST(RankRevealingQr, FactorsAloneSolveToTheirCondition) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    constexpr std::size_t n = 50;
+    std::vector<double> a(n * n), x(n), found(n), refined(n);
+    for (double& value : a) value = random.uniform(-1.0, 1.0);
+    for (double& value : x) value = random.uniform(-1.0, 1.0);
+    RankRevealingQr qr;
+    qr.factor(a, n, n, 1e-14);
+    const auto b = product(a, x, n);
+    qr.solve_by_factors(b, found);
+    qr.solve(b, refined);
+    const double good = 1e-14 / qr.reciprocal_condition();
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(found[i], refined[i], good) << "seed " << seed;
   }
 }
 
