@@ -77,14 +77,23 @@ void make_dense(std::vector<RowSet>& sets, ContactProblem& problem) {
 }  // namespace
 
 void IslandProblem::build(std::span<const Constraint> constraints, const double* velocity_before,
-                          BodyResponse* response, SweepStart start) {
+                          BodyResponse* response, const IslandStart& start) {
+  const bool goes_on = start.from_answer && answer_.known && constraints_.data() == constraints.data() &&
+                       constraints_.size() == constraints.size();
   constraints_ = constraints;
   answer_.known = answer_.changed_modes = false;
+  answer_.keeps_equations = start.keeps_equations;
   jam_.begin();
   response_.factors.clear();
   answer_.response.clear();
   if (constraints.size() != 1 || constraints[0].rows != 2 || !problem_.is_one_planar_contact()) {
-    return build_any(velocity_before, response, start);
+    const std::size_t groups = answer_.modes.size();
+    if (goes_on) xi_ = answer_.impulse;
+    build_any(velocity_before, response, start);
+    if (!goes_on || xi_.size() != answer_.impulse.size() || groups != problem_.groups().size()) return;
+    answer_.impulse = xi_;
+    answer_.known = true;
+    return;
   }
   // The hot path: one planar contact after another, so that only its numbers need to be filled in.
   const Constraint& contact = constraints[0];
@@ -103,7 +112,8 @@ void IslandProblem::build(std::span<const Constraint> constraints, const double*
   response_.dense.write_symmetric(problem_.matrix().data());
 }
 
-void IslandProblem::build_any(const double* velocity_before, BodyResponse* response, SweepStart start) {
+void IslandProblem::build_any(const double* velocity_before, BodyResponse* response,
+                              const IslandStart& start) {
   constexpr std::size_t at_a_time = 32;  // they and their rows fit into the nearest cache
   const std::span<const Constraint> constraints = constraints_;
   modes_.clear();
@@ -125,7 +135,7 @@ void IslandProblem::build_any(const double* velocity_before, BodyResponse* respo
     write_rows({0, static_cast<Index>(constraints.size())}, velocity_before);
     if (!factored) {  // factors are still to be written
       problem_.group();
-      if (start && constraints.size() > 1) start(constraints, answer_.impulse.data());
+      if (start.impulses && constraints.size() > 1) start.impulses(constraints, answer_.impulse.data());
     }
     if (response != nullptr) respond(*response);
     return;
@@ -141,7 +151,8 @@ void IslandProblem::build_any(const double* velocity_before, BodyResponse* respo
       forget_impulses();
       return respond(*response);
     }
-    if (start) start(constraints.subspan(first, last - first), answer_.impulse.data() + row);
+    if (start.impulses)
+      start.impulses(constraints.subspan(first, last - first), answer_.impulse.data() + row);
   }
   problem_.group();
 }
@@ -266,7 +277,7 @@ const ContactReport& IslandProblem::solve(SolverChain& chain) {
   if (impact_.solver != nullptr) {
     impact_.solver->solve(impact_.law, problem_, restitution_, chain, answer_);
   } else {
-    chain.solve(problem_, answer_);
+    chain.solve(problem_, answer_, answer_.keeps_equations ? &answer_.equations : nullptr);
   }
   const bool alone = problem_.groups().size() == 1 && modes_.empty();
   if (alone && answer_.report.usable()) return answer_.report;  // nearly always

@@ -13,6 +13,7 @@
 #include <carom/contact/plastic_jams.h>
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/impact_solver.h>
+#include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
@@ -44,20 +45,36 @@ struct IslandOptions {
   bool plastic_jams = false;
 };
 
+/// Where the solvers of an island start from.
+struct IslandStart {
+  /// Writes impulses by row of some constraints, one behind the other; asked for all of several constraints.
+  /// Nothing: they start from zero.
+  FunctionRef<void(std::span<const Constraint> constraints, double* impulses)> impulses{};
+  /// They start from the answer to the last problem instead, in its modes: if its constraints stood where
+  /// these do, are several, and have as many rows.
+  bool from_answer = false;
+  /// What solves the problem is kept for the next one that starts from its answer: some n^2 numbers for n
+  /// rows.
+  bool keeps_equations = false;
+};
+
+/// An answer, and what solved it.
+struct IslandAnswer : ContactSolution {
+  ModeEquations equations;       ///< of its modes; none if none were kept
+  bool keeps_equations = false;  ///< whether they are kept
+};
+
 /// Problem, matrix and answer of an island. Reuse it: its memory is kept.
 class CAROM_API IslandProblem {
 public:
   explicit IslandProblem(const IslandOptions& options = {}) : options_(options) {}
-  /// Writes impulses from which solvers start, by row, of some constraints one behind the other.
-  using SweepStart = FunctionRef<void(std::span<const Constraint> constraints, double* impulses)>;
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
-  /// forgotten; respond() is next, unless a response is given. build() and respond() throw SolverError for
-  /// more constraints than W in full has room for.
-  /// \param response makes W at once: of a large island for some constraints at a time, while these are in a
-  /// near cache, which does not hold all \param start asked for all of several constraints; nothing: solvers
-  /// start from zero
+  /// forgotten, unless solvers are to start from it; respond() is next, unless a response is given. build()
+  /// and respond() throw SolverError for more constraints than W in full has room for. \param response makes
+  /// W at once: of a large island for some constraints at a time, while these are in a near cache, which does
+  /// not hold all \param start of the solvers
   void build(std::span<const Constraint> constraints, const double* velocity_before,
-             BodyResponse* response = nullptr, SweepStart start = {});
+             BodyResponse* response = nullptr, const IslandStart& start = {});
   /// Makes W. Of a response that is only nearly symmetric W takes one half; that is good enough for
   /// set_velocity().
   void respond(BodyResponse& response);
@@ -115,7 +132,7 @@ public:
   }
 
 private:
-  void build_any(const double* velocity_before, BodyResponse* response, SweepStart start);
+  void build_any(const double* velocity_before, BodyResponse* response, const IslandStart& start);
   void write_rows(Range constraints, const double* velocity_before);
 
   // Solver of impacts by another law.
@@ -136,7 +153,7 @@ private:
   std::vector<ImpulseDirection> directions_;
   IslandResponse response_;
   ContactProblem problem_;
-  ContactSolution answer_;
+  IslandAnswer answer_;
   ImpactChoice impact_;
   std::vector<ContactMode> modes_;  // by constraint; empty where none is attached to another
   std::vector<int> first_row_;

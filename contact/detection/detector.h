@@ -34,7 +34,9 @@ public:
         outlines_(assembly, lengths),
         points_(assembly, outlines_.shapes(), outlines_.laws()),
         on_ground_(outlines_),
-        joints_(assembly) {}
+        joints_(assembly),
+        needs_rotations_(!joints_.empty() || points_.needs_rotations() ||
+                         (bodies_touch() && outlines_.of_bodies().any_off_centre())) {}
   Detector(const Detector&) = delete;
   Detector& operator=(const Detector&) = delete;
 
@@ -111,10 +113,7 @@ public:
   }
   /// True if find() looks at the rotations of bodies: a feature stands off a centre of mass, or a joint has
   /// limits or friction.
-  [[nodiscard]] bool needs_rotations() const {
-    return !joints_.empty() || points_.needs_rotations() ||
-           (bodies_touch() && outlines_.of_bodies().any_off_centre());
-  }
+  [[nodiscard]] bool needs_rotations() const { return needs_rotations_; }
 
   /// As contact_name() of the assembly's system.
   [[nodiscard]] std::string name(const ConstraintKey& key) const;
@@ -125,6 +124,7 @@ private:
   PointContacts points_;  // of shapes and laws of the outlines
   GroundTouches on_ground_;
   JointRows joints_;
+  bool needs_rotations_;
 };
 
 /// True if some law of impact is not Newton's.

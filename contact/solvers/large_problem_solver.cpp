@@ -91,12 +91,17 @@ void LargeProblemSolver::polish(const ContactProblem& problem, std::span<double>
 }
 
 void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> impulse, std::span<double> xi,
-                               std::span<ContactMode> modes, ContactReport& report) {
+                               std::span<ContactMode> modes, ContactReport& report,
+                               ModeEquations* equations) {
   constexpr auto id = static_cast<std::size_t>(SolverId::nonlinear_cg);
   const std::size_t contacts = problem.groups().size();
   report.solver = solver_names[id];
   report.tried = 1u << id;
   const bool is_small = contacts <= most_exact, is_exacting = demands_exact(problem);
+  if (equations != nullptr && equations->are_of(problem)) {
+    Residual refined;
+    static_cast<void>(polish_.refine(problem, *equations, impulse, refined));
+  }
   Residual found = judge(problem, impulse, xi);
   const bool is_certified = found.value <= certified_start;
   SweepBudget budget = budget_;
@@ -119,6 +124,7 @@ void LargeProblemSolver::solve(const ContactProblem& problem, std::span<double> 
                   (is_exacting && swept == Outcome::not_solved && problem.rows() <= most_dense_rows));
   if (is_small ? !is_certified && !(found.value <= NewtonPolish::round_off) : is_polished) {
     polish(problem, impulse);
+    if (equations != nullptr) polish_.swap_equations(*equations);
     found = judge(problem, impulse, xi);
   }
   report.residual = found.value;

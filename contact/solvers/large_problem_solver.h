@@ -41,8 +41,10 @@ public:
   void set_budget(const SweepBudget& budget);
   /// Improves impulses, and writes xi = W P + b, the modes of the groups and a report. Impulses that are an
   /// answer stay as they are.
+  /// \param equations those of the modes of the impulses, as a problem of the same rows had them that was a
+  /// little different: they are tried first; out: those that solved this one, if any did. Null: none
   void solve(const ContactProblem& problem, std::span<double> impulse, std::span<double> xi,
-             std::span<ContactMode> modes, ContactReport& report);
+             std::span<ContactMode> modes, ContactReport& report, ModeEquations* equations = nullptr);
   /// M^-1 H^T P of the impulses that were written, three numbers a slot. Valid until the next solve().
   [[nodiscard]] std::span<const double> response() const { return slot_velocity_; }
   /// Outcome of an answer of some residual.

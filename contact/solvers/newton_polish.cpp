@@ -14,6 +14,9 @@ namespace {
 // Below this pivot ratio a direction of the Newton system is left alone: impulses that are not unique.
 constexpr double rank_tolerance = 1e-12;
 
+// Residual at which a step that does not halve it moves noise: the answer is as good as that of improve().
+constexpr double rounding = 1e-14;
+
 // Steps in a row that do not halve the residual, after which modes change without an end.
 constexpr int most_idle_steps = 6;
 
@@ -70,55 +73,73 @@ void NewtonPolish::linearise_disc(const ContactProblem& problem, std::size_t row
   }
 }
 
+// The map of a row that is none of a disc, at the trial.
+NewtonPolish::RowMap NewtonPolish::map_of(const ContactProblem& problem, std::size_t i, double rho) const {
+  const RowSet& set = problem.sets()[i];
+  if (set.kind == SetKind::proportional) {
+    const double given = set.coefficient * trial_[static_cast<std::size_t>(set.bound)];
+    return {Piece::given, trial_[i] - given, set.coefficient};
+  }
+  double lower = set.lower, upper = set.upper, slope = 0.0;
+  if (set.kind == SetKind::bounded_interval) {
+    slope = set.coefficient;
+    upper = slope * std::max(trial_[static_cast<std::size_t>(set.bound)], 0.0);
+    lower = -upper;
+  } else if (set.kind == SetKind::half_line) {
+    lower = 0.0;
+    upper = std::numeric_limits<double>::infinity();
+  }
+  const double moved = trial_[i] - rho * xi_[i];
+  if (moved > lower && moved < upper && rho > 0.0) return {Piece::free, rho * xi_[i], 0.0};
+  const bool at_upper = moved >= upper && upper > lower;
+  if (at_upper) return {Piece::upper, trial_[i] - upper, slope > 0.0 ? slope : 0.0};
+  return {Piece::lower, trial_[i] - lower, slope > 0.0 ? -slope : 0.0};
+}
+
 void NewtonPolish::linearise(const ContactProblem& problem) {
+  equations_.pieces.assign(xi_.size(), Piece::disc);
   for (const RowGroup& group : problem.groups()) {
     const double rho = group_rho(problem, group);
     const auto last = static_cast<std::size_t>(group.first + group.size);
     for (auto i = static_cast<std::size_t>(group.first); i < last; ++i) {
-      const RowSet& set = problem.sets()[i];
-      if (set.kind == SetKind::bounded_disc) {
+      if (problem.sets()[i].kind == SetKind::bounded_disc) {
         linearise_disc(problem, i++, rho);
         continue;
       }
-      if (set.kind == SetKind::proportional) {
-        const auto bound = static_cast<std::size_t>(set.bound);
-        set_row(problem, i, 1.0, 0.0, rho);
-        jacobian_[i * xi_.size() + bound] -= set.coefficient;
-        map_[i] = trial_[i] - set.coefficient * trial_[bound];
-        continue;
+      const RowMap map = map_of(problem, i, rho);
+      const bool is_free = map.piece == Piece::free;
+      set_row(problem, i, is_free ? 0.0 : 1.0, is_free ? 1.0 : 0.0, rho);
+      if (map.slope != 0.0) {
+        jacobian_[i * xi_.size() + static_cast<std::size_t>(problem.sets()[i].bound)] -= map.slope;
       }
-      double lower = set.lower, upper = set.upper, slope = 0.0;
-      if (set.kind == SetKind::bounded_interval) {
-        slope = set.coefficient;
-        upper = slope * std::max(trial_[static_cast<std::size_t>(set.bound)], 0.0);
-        lower = -upper;
-      } else if (set.kind == SetKind::half_line) {
-        lower = 0.0;
-        upper = std::numeric_limits<double>::infinity();
-      }
-      const double moved = trial_[i] - rho * xi_[i];
-      if (moved > lower && moved < upper && rho > 0.0) {
-        set_row(problem, i, 0.0, 1.0, rho);
-        map_[i] = rho * xi_[i];
-        continue;
-      }
-      const bool at_upper = moved >= upper && upper > lower;
-      set_row(problem, i, 1.0, 0.0, rho);
-      map_[i] = trial_[i] - (at_upper ? upper : lower);
-      if (slope > 0.0) {
-        jacobian_[i * xi_.size() + static_cast<std::size_t>(set.bound)] -= at_upper ? slope : -slope;
-      }
+      map_[i] = map.value;
+      equations_.pieces[i] = map.piece;
     }
   }
 }
 
+// Writes the map at the trial. False where a row has another piece than in the equations that are factored.
+bool NewtonPolish::keeps_pieces(const ContactProblem& problem, std::span<const Piece> pieces) {
+  for (const RowGroup& group : problem.groups()) {
+    const double rho = group_rho(problem, group);
+    const auto last = static_cast<std::size_t>(group.first + group.size);
+    for (auto i = static_cast<std::size_t>(group.first); i < last; ++i) {
+      if (pieces[i] == Piece::disc || problem.sets()[i].kind == SetKind::bounded_disc) return false;
+      const RowMap map = map_of(problem, i, rho);
+      if (map.piece != pieces[i]) return false;
+      map_[i] = map.value;
+    }
+  }
+  return true;
+}
+
 // Rounding of a step leaves impulses beside their sets; a row at a bound goes back to the bound exactly.
-void NewtonPolish::restore_sets(const ContactProblem& problem) {
+void NewtonPolish::restore_sets(const ContactProblem& problem, std::span<const Piece> pieces) {
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     const RowSet& set = problem.sets()[i];
     switch (set.kind) {
       case SetKind::half_line:
-        trial_[i] = std::max(trial_[i], 0.0);
+        trial_[i] = pieces[i] == Piece::lower ? 0.0 : std::max(trial_[i], 0.0);
         break;
       case SetKind::interval:
         trial_[i] = std::clamp(trial_[i], set.lower, set.upper);
@@ -153,15 +174,16 @@ Residual NewtonPolish::improve(const ContactProblem& problem, std::span<double> 
   map_.resize(n);
   step_.resize(n);
   jacobian_.resize(n * n);
+  equations_.pieces.clear();
   Residual best = judge(problem, trial_);
   int idle = 0;
   const auto goes_on = [&] { return best.value > round_off && std::isfinite(best.value); };
   for (int k = 0; k < most_steps && idle < most_idle_steps && goes_on(); ++k) {
     linearise(problem);
-    qr_.factor(jacobian_, n, n, rank_tolerance);
-    qr_.solve(map_, step_);
+    equations_.factors.factor(jacobian_, n, n, rank_tolerance);
+    equations_.factors.solve(map_, step_);
     for (std::size_t i = 0; i < n; ++i) trial_[i] -= step_[i];
-    restore_sets(problem);
+    restore_sets(problem, equations_.pieces);
     const Residual now = judge(problem, trial_);
     if (!std::isfinite(now.value)) break;
     idle = now.value < 0.5 * best.value ? 0 : idle + 1;
@@ -172,6 +194,38 @@ Residual NewtonPolish::improve(const ContactProblem& problem, std::span<double> 
   }
   std::copy(best_.begin(), best_.end(), impulse.begin());
   return best;
+}
+
+bool NewtonPolish::refine(const ContactProblem& problem, ModeEquations& equations, std::span<double> impulse,
+                          Residual& found) {
+  const auto n = static_cast<std::size_t>(problem.rows());
+  trial_.assign(impulse.begin(), impulse.end());
+  xi_.resize(n);
+  map_.resize(n);
+  step_.resize(n);
+  double last = std::numeric_limits<double>::infinity();
+  for (;;) {
+    problem.velocities(trial_, xi_, slot_velocity_);
+    found = residual(problem, trial_, xi_);
+    if (found.value <= round_off) break;
+    if (!(found.value < 0.5 * last)) {
+      if (last > rounding) return false;
+      break;
+    }
+    last = found.value;
+    best_.assign(trial_.begin(), trial_.end());
+    if (!keeps_pieces(problem, equations.pieces)) return false;
+    equations.factors.solve_by_factors(map_, step_);
+    for (std::size_t i = 0; i < n; ++i) trial_[i] -= step_[i];
+    restore_sets(problem, equations.pieces);
+  }
+  if (found.value > last) {
+    trial_.swap(best_);
+    problem.velocities(trial_, xi_, slot_velocity_);
+    found = residual(problem, trial_, xi_);
+  }
+  std::copy(trial_.begin(), trial_.end(), impulse.begin());
+  return true;
 }
 
 }  // namespace carom

@@ -43,8 +43,10 @@ struct SolverChain::Workspace {
   void take_at_cap(const ExactAttempt& attempt, ContactReport& report) const;
   [[nodiscard]] bool is_nearly_solved(const ContactProblem& problem, std::span<const double> impulse,
                                       const ContactReport& report) const;
-  void sweep(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
-  bool sweep_or_solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
+  void sweep(const ContactProblem& problem, std::span<double> impulse, ContactReport& report,
+             ModeEquations* equations = nullptr);
+  bool sweep_or_solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report,
+                      ModeEquations* equations = nullptr);
 };
 
 // Sizes the workspace; false for a problem without rows, which is solved.
@@ -111,15 +113,15 @@ bool SolverChain::Workspace::certify(const ContactProblem& problem, ContactSolut
 
 // A problem in factors, from the impulses at hand.
 void SolverChain::Workspace::sweep(const ContactProblem& problem, std::span<double> impulse,
-                                   ContactReport& report) {
-  if (begin(problem, impulse, report)) large.solve(problem, impulse, xi, modes, report);
+                                   ContactReport& report, ModeEquations* equations) {
+  if (begin(problem, impulse, report)) large.solve(problem, impulse, xi, modes, report, equations);
 }
 
 // Sweeps a problem in factors from the impulses at hand; a small one is solved by the exact solvers where the
 // modes of the sweeps are not those of the answer. True if the impulses are those that `large` has judged.
 bool SolverChain::Workspace::sweep_or_solve(const ContactProblem& problem, std::span<double> impulse,
-                                            ContactReport& report) {
-  sweep(problem, impulse, report);
+                                            ContactReport& report, ModeEquations* equations) {
+  sweep(problem, impulse, report, equations);
   ExactAttempt attempt{
       impulse, xi, report, SolverId::nonlinear_cg, SolverId::nonlinear_cg, false, 1, tolerated_residual};
   const bool is_left = !(report.residual <= accepted_residual) && large.has_dense(problem, report);
@@ -179,7 +181,7 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
   count(report, attempt.best, attempt.applicable, work.statistics);
 }
 
-void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution) {
+void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution, ModeEquations* equations) {
   Workspace& work = *work_;
   ContactReport& report = solution.report;
   const bool warm = std::exchange(solution.known, true) && report.usable();
@@ -193,7 +195,8 @@ void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution
   if (problem.is_factored()) {
     demand_grouped(problem, solution.impulse);
     report = {};
-    if (work.sweep_or_solve(problem, solution.impulse, report)) {
+    if (!warm && equations != nullptr) equations->pieces.clear();
+    if (work.sweep_or_solve(problem, solution.impulse, report, equations)) {
       const std::span<const double> response = work.large.response();
       solution.response.assign(response.begin(), response.end());
     }

@@ -20,6 +20,8 @@
 
 namespace carom {
 
+struct ModeEquations;
+
 /// Answer of a contact problem, and what solvers start from in the next one of the same rows.
 struct ContactSolution {
   std::vector<double> impulse;     ///< P, by row [N s]
@@ -61,7 +63,9 @@ public:
   /// several solutions; the report keeps to their word. Without a solution before, several contacts start
   /// from `solution.impulse` all the same: where that is an answer to rounding (certified_start) no solver is
   /// asked, and sweeps over a problem in factors start from it. \param solution `impulse` sized rows()
-  void solve(const ContactProblem& problem, ContactSolution& solution);
+  /// \param equations those of the modes of the start, of a problem in factors as it was before, which are
+  /// tried first (newton_polish.h); out: those that solved the problem, if any did. Null: none
+  void solve(const ContactProblem& problem, ContactSolution& solution, ModeEquations* equations = nullptr);
 
   /// Solves `problem` by one solver alone and writes `impulse` [N s], polished and judged as in the chain. A
   /// solver that is not made for the problem answers not_solved ("not applicable") with zero impulses. The

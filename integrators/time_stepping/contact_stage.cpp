@@ -69,7 +69,7 @@ ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options
     : assembly_(&assembly),
       masses_(assembly),
       one_body_each_(assembly.components().size() == assembly.layout()->bodies().size()),
-      of_problems_{.factored_from = factored_constraints, .plastic_jams = !options.impact_rules.refuse_jams} {
+      problems_({.factored_from = factored_constraints, .plastic_jams = !options.impact_rules.refuse_jams}) {
   Index most_blocks = 1, most_runs = 1;
   for (const Component& component : assembly.components()) {
     most_blocks = std::max(most_blocks, component.blocks.size());
@@ -80,25 +80,15 @@ ContactStage::ContactStage(const Assembly& assembly, const TimeStepping& options
   for (SolverChain& chain : chains_) chain.set_budget(budget_of(options));
 }
 
-/// Forgets the problems of the island before.
-void ContactStage::begin(const StepIsland& island) {
-  first_ = island.constraints.size() >= factored_constraints ? 0 : 1;
-  in_use_ = 0;
-}
-
-/// Of one more problem.
-void ContactStage::make_room() {
-  while (first_ + in_use_ >= problems_.size()) problems_.emplace_back(of_problems_);
-}
-
 void ContactStage::state_problems(const StepInput& in, const StepIsland& island, bool together,
                                   StepTrial& trial) {
-  begin(island);
+  problems_.begin(island);
   by_block_ = !together && island.components.size() == 1;
   if (island.constraints.empty()) return;
   trial.expect_impulses();
   if (together) {
-    next_problem().build(island.constraints, in.start.v.data());
+    problems_.next().build(island.constraints, in.start.v.data(), nullptr,
+                           problems_.start_of(island.constraints));
   } else {
     static_cast<void>(part_problems(in, island, [](IslandProblem&) { return true; }));
   }
@@ -116,9 +106,10 @@ const IslandProblem* ContactStage::part_problems(const StepInput& in, const Step
   const auto bodies = static_cast<Index>(assembly_->layout()->bodies().size());
   const ContactHistory& before = in.companion.contacts;
   LastImpulses last(before, in.step);
-  const IslandProblem::SweepStart start = before.empty() ? IslandProblem::SweepStart() : last;
   const auto take = [&](std::span<Constraint> constraints) -> const IslandProblem* {
-    IslandProblem& problem = next_problem();
+    IslandStart start = problems_.start_of(constraints);
+    if (!before.empty()) start.impulses = last;
+    IslandProblem& problem = problems_.next();
     problem.build(constraints, in.start.v.data(), &masses_, start);
     return solved(problem) ? nullptr : &problem;
   };
@@ -165,7 +156,7 @@ void ContactStage::list_struck(std::span<const Constraint> constraints) {
 
 const IslandProblem* ContactStage::solve_constant(const StepInput& in, const StepIsland& island, Alone alone,
                                                   StepTrial& trial) {
-  begin(island);
+  problems_.begin(island);
   lone_.clear();
   struck_.clear();
   if (island.constraints.empty()) return nullptr;
@@ -222,14 +213,15 @@ void ContactStage::share_out(const StepIsland& island, StepTrial& trial) {
     std::fill(trial.dv_impulses.begin() + v.begin, trial.dv_impulses.begin() + v.end, 0.0);
   };
   if (blocks.size() == 1) {
-    block_problems_[0] = {0, static_cast<Index>(in_use_)};
+    block_problems_[0] = {0, static_cast<Index>(problems().size())};
     return clear(component.v);
   }
   Index next = 0;
   for (Index part = 0; part < blocks.size(); ++part) {
     const Block& block = assembly_->blocks()[blocks.begin + part];
     const Index first = next;
-    for (; next < in_use_ && problems()[next].constraints().front().body() < block.bodies.end; ++next) {
+    for (; next < problems().size() && problems()[next].constraints().front().body() < block.bodies.end;
+         ++next) {
       by_block_ = by_block_ && lies_within(problems()[next], block);
     }
     block_problems_[part] = {first, next};
@@ -239,7 +231,7 @@ void ContactStage::share_out(const StepIsland& island, StepTrial& trial) {
 }
 
 bool ContactStage::touches(Index part) const {
-  return in_use_ > 0 && (!by_block_ || !block_problems_[part].empty());
+  return !problems().empty() && (!by_block_ || !block_problems_[part].empty());
 }
 
 void ContactStage::solve_block(const StepInput& in, const StepRule& rule, const Block& block, Index part,

@@ -9,6 +9,7 @@
 #include <carom/contact/lone_contacts.h>
 #include <carom/core/dynamics/body_response.h>
 #include <carom/core/export.h>
+#include <carom/integrators/time_stepping/island_problems.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_rule.h>
@@ -30,6 +31,11 @@ public:
   /// \param assembly must outlive it
   ContactStage(const Assembly& assembly, const TimeStepping& options);
 
+  /// Begins a step that may be made in several passes, as IslandProblems::begin_passes().
+  void begin_passes(bool repeats) { problems_.begin_passes(repeats); }
+  /// Begins the next pass of such a step, as IslandProblems::begin_next_pass().
+  void begin_next_pass() { problems_.begin_next_pass(); }
+
   /// States the contact problems of an island. \param together its bodies answer together: one problem, whose
   /// matrix is still to be made; else bodies answer for themselves, and constraints that share bodies share a
   /// problem
@@ -47,12 +53,8 @@ public:
   /// Those of the given bodies that have constraints, after solve_constant().
   [[nodiscard]] std::span<const Index> struck(Range bodies) const;
   /// Problems of the island at hand.
-  [[nodiscard]] std::span<IslandProblem> problems() {
-    return in_use_ == 0 ? std::span<IslandProblem>() : std::span(problems_).subspan(first_, in_use_);
-  }
-  [[nodiscard]] std::span<const IslandProblem> problems() const {
-    return in_use_ == 0 ? std::span<const IslandProblem>() : std::span(problems_).subspan(first_, in_use_);
-  }
+  [[nodiscard]] std::span<IslandProblem> problems() { return problems_.list(); }
+  [[nodiscard]] std::span<const IslandProblem> problems() const { return problems_.list(); }
   /// True if problems lie within the blocks of one component each, so that blocks can be solved one by one.
   [[nodiscard]] bool by_block() const { return by_block_; }
   /// True if impulses may change velocities of a block of the only component.
@@ -78,12 +80,6 @@ private:
     const double* start;
     const double* end;
   };
-  void begin(const StepIsland& island);
-  IslandProblem& next_problem() {
-    if (first_ + in_use_ >= problems_.size()) make_room();
-    return problems_[first_ + in_use_++];
-  }
-  void make_room();
   template <class F>
   [[nodiscard]] const IslandProblem* part_problems(const StepInput& in, const StepIsland& island, F&& solved);
   [[nodiscard]] bool list_lone(std::span<const Constraint> constraints);
@@ -97,9 +93,7 @@ private:
   MassResponse masses_;
   bool one_body_each_;  // components are bodies
   IslandPartition partition_;
-  IslandOptions of_problems_;
-  std::vector<IslandProblem> problems_;
-  std::size_t first_ = 0, in_use_ = 0;  // of the island; problem 0 is for large ones, to keep its memory
+  IslandProblems problems_;
   bool by_block_ = true;
   Index first_run_ = 0;                // of the component at hand
   std::vector<Range> block_problems_;  // by block of the component at hand, if there are any

@@ -10,10 +10,6 @@ namespace carom {
 
 namespace {
 
-constexpr int most_tries = 20;
-// Of velocities: changes as small as this are rounding.
-constexpr double relative_rounding = 1e-14;
-
 bool is_before(const Constraint& a, const Constraint& b) {
   return a.key != b.key ? a.key < b.key : a.attached < b.attached;
 }
@@ -39,8 +35,7 @@ void ContactTurning::begin(std::span<const StepIsland> islands, double step, boo
   turned_.clear();
   shared_.clear();
   mechanisms_.clear();
-  tries_ = 0;
-  change_ = std::numeric_limits<double>::infinity();
+  convergence_.begin();
   joints_->forget_paths();
   for (const StepIsland& island : islands) {
     for (const Constraint& contact : island.constraints) {
@@ -97,27 +92,6 @@ std::size_t ContactTurning::find(const Constraint& contact) const {
   return found ? static_cast<std::size_t>(at - turned_.begin()) : turned_.size();
 }
 
-bool ContactTurning::has_converged(const StepTrial& trial, double residual) {
-  const std::vector<double>& v = trial.end.v;
-  double size = 0.0;
-  for (std::size_t i = 0; i < v.size(); ++i) size = std::max(size, lengths_[i] * std::abs(v[i]));
-  // At rest velocities are rounding of those that impulses take away.
-  for (std::size_t i = 0; i < trial.dv_impulses.size(); ++i)
-    size = std::max(size, lengths_[i] * std::abs(trial.dv_impulses[i]));
-  noise_ = relative_rounding * size;
-  if (tries_ > 0) {
-    double change = 0.0;
-    for (std::size_t i = 0; i < v.size(); ++i)
-      change = std::max(change, lengths_[i] * std::abs(v[i] - last_[i]));
-    if (change <= std::max(noise_, residual * size) || !(change < change_) || tries_ == most_tries)
-      return true;
-    change_ = change;
-  }
-  last_.assign(v.begin(), v.end());
-  ++tries_;
-  return false;
-}
-
 /// Gaps that contacts which last may have within the step [m].
 double ContactTurning::reach(const StepInput& in) const {
   constexpr double more = 2.0;
@@ -139,8 +113,9 @@ void ContactTurning::find_at(const State& state, double margin, ConstraintSet& o
 }
 
 bool ContactTurning::turn(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands,
-                          double residual) {
-  if ((turned_.empty() && mechanisms_.empty()) || has_converged(trial, residual)) return false;
+                          double tolerance, double residual) {
+  if (turned_.empty() && mechanisms_.empty()) return false;
+  if (convergence_.has_converged(trial, tolerance / in.step, residual)) return false;
   middle_ = trial.end;
   middle_.time = in.start.time + 0.5 * in.step;
   // In the plane coordinates and velocities correspond one to one.
@@ -162,7 +137,7 @@ bool ContactTurning::turn(const StepInput& in, StepTrial& trial, std::span<const
 
 void ContactTurning::give_up(std::span<const StepIsland> islands) {
   joints_->forget_paths();
-  tries_ = 0;
+  convergence_.begin();
   for (Turned& turned : turned_) turned.now = turned.start;
   for (const StepIsland& island : islands) restore(island);
 }
@@ -202,13 +177,13 @@ bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, co
     turned.now.surface_velocity[row] = middle.times(i, v0) - turned.start.velocity(i, v0);
     turned.now.surface_velocity_after[row] = middle.times(i, v1) - end.velocity(i, v1);
     const double made_up = turned.now.surface_velocity_after[row] - turned.ground_after[row];
-    turns = turns || std::abs(made_up) > noise_;
+    turns = turns || std::abs(made_up) > convergence_.noise();
   }
   return turns;
 }
 
 double ContactTurning::work(const IslandProblem& problem) const {
-  if (tries_ == 0) return 0.0;
+  if (convergence_.passes() == 0) return 0.0;
   double sum = 0.0;
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];

@@ -21,13 +21,13 @@
 #include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
+#include <carom/integrators/time_stepping/pass_convergence.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>
 #include <carom/integrators/time_stepping/step_trial.h>
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,19 +38,16 @@ class CAROM_API ContactTurning {
 public:
   /// All must outlive it. \param negligible turning_rounding() [m]
   ContactTurning(const Assembly& assembly, const Detector& detector, JointStages& joints, double negligible)
-      : look_(assembly, detector),
-        joints_(&joints),
-        negligible_(negligible),
-        lengths_(assembly.length_scales()) {}
+      : look_(assembly, detector), joints_(&joints), negligible_(negligible), convergence_(assembly) {}
 
   /// Begins a step whose constraints are those of some islands, as they are at its start. \param step [s]
   /// \param alone whether bodies none of whose contacts is shared are followed by themselves
   void begin(std::span<const StepIsland> islands, double step, bool alone);
   /// Brings the constraints to the path of the trial, and the joints that answer them. False if they are
-  /// there: nothing turns, or the end of the trial has changed no more than rounding and errors of the
-  /// answers since the last time, or no less. \param residual the largest certificate of the answers
+  /// there: nothing turns, or further passes are of no use (PassConvergence).
+  /// \param tolerance of h times velocities [m] \param residual the largest certificate of the answers
   [[nodiscard]] bool turn(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands,
-                          double residual);
+                          double tolerance, double residual);
   /// Brings the constraints back to the start of the step. Contacts between which a body jams may press it,
   /// as they turn, by what is an error of the step; no impulses hold then, but along the rows at the start.
   void give_up(std::span<const StepIsland> islands);
@@ -70,7 +67,6 @@ private:
   void restore(const StepIsland& island) const;
   [[nodiscard]] std::size_t find(const Constraint& contact) const;
   [[nodiscard]] bool turn(Turned& turned, const double* v0, const double* v1, const StepTrial& at) const;
-  [[nodiscard]] bool has_converged(const StepTrial& trial, double residual);
   [[nodiscard]] double reach(const StepInput& in) const;
   void find_at(const State& state, double margin, ConstraintSet& out);
 
@@ -84,12 +80,8 @@ private:
   std::vector<Index> mechanisms_;  // components whose joints answer contact
   struct {
     ConstraintSet middle, end;
-  } found_;                      // halfway and at the end, by key and type
-  std::vector<double> lengths_;  // Assembly::length_scales()
-  std::vector<double> last_;     // velocities at the end of the trial before
-  double change_ = std::numeric_limits<double>::infinity();
-  double noise_ = 0.0;  // velocities that are rounding [m/s]
-  int tries_ = 0;
+  } found_;  // halfway and at the end, by key and type
+  PassConvergence convergence_;
 };
 
 }  // namespace carom

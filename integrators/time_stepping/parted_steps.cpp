@@ -49,7 +49,9 @@ void PartedSteps::make_part(const Whole& whole, double length, double end) {
   is_parted_ = is_parted_ || length < whole.step;
   trial_.state = done_.state;
   trial_.companion = done_.companion;
-  stepper_->step(trial_.state, trial_.companion, length, end, part_, length / whole.step);
+  const bool repeats = std::exchange(repeats_, false);  // not after an error
+  stepper_->step(trial_.state, trial_.companion, length, end, part_, {length / whole.step, repeats});
+  repeats_ = true;
   made_ += stepper_->last().passes;
 }
 
@@ -174,6 +176,7 @@ void PartedSteps::make_parts(const State& state, const Companion& companion, con
                              bool searches) {
   done_.state = state;
   done_.companion = companion;
+  repeats_ = false;
   parts_ = 0;
   searches_ = searches;
   closings_->begin_step();
@@ -186,6 +189,7 @@ void PartedSteps::make_parts(const State& state, const Companion& companion, con
       add(part_, sum_);
     }
     std::swap(done_, trial_);
+    repeats_ = false;
     keep_impulses();
   }
 }

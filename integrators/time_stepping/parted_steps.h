@@ -74,6 +74,7 @@ private:
   int parts_ = 0;           // that ended early
   int made_ = 0;            // steps of the whole model for the step at hand, with those repeated
   bool searches_ = true;    // for closings, in the step at hand
+  bool repeats_ = false;    // the step before began where the part at hand does
   bool is_parted_ = false;  // some of it was made that is shorter
   std::vector<double> accelerations_;
   StepReport part_, sum_;

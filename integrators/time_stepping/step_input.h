@@ -18,6 +18,7 @@ struct StepInput {
   double end_time;             ///< t_{j+1} [s]
   double last_step = 0.0;      ///< length of the step before [s]
   double share = 1.0;          ///< of the step of which this is a part
+  bool repeats = false;        ///< the step before began with the same, and has another length
 };
 
 }  // namespace carom

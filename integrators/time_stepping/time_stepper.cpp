@@ -58,15 +58,16 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
 }
 
 void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report,
-                       double share) {
+                       const StepPart& part) {
   const bool known = companion.loads.valid && companion.loads.mean == parts_.rule.is_mean();
   if (!known) evaluate_start(parts_, state, companion);
-  const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step, share};
+  const StepInput in{*parts_.assembly,       state,      companion,   step, end_time,
+                     companion.history.step, part.share, part.repeats};
   try {
     parts_.flights.clear();
     flown_ = uncoupled_ ? uncoupled_->fly(in, state, companion, report) : Flight::not_free;
     if (flown_ == Flight::made) return;
-    struck_ = impacts_ != nullptr && strike(in);
+    if (!in.repeats) struck_ = impacts_ != nullptr && strike(in);
   } catch (const RunError& error) {
     throw with_file(with_place(error, in), parts_.options);
   }
@@ -76,18 +77,19 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   companion.loads.valid = false;
   try {
     evaluate_start(parts_, impacts_->start(), companion);
-    step_from({*parts_.assembly, impacts_->start(), companion, step, end_time, in.last_step, share}, state,
-              companion, report);
+    step_from(
+        {*parts_.assembly, impacts_->start(), companion, step, end_time, in.last_step, in.share, in.repeats},
+        state, companion, report);
   } catch (...) {
     std::swap(companion.loads, loads_before_);
     throw;
   }
   companion.contact_statistics += impacts_->chain().statistics();
-  impacts_->chain().reset_statistics();
 }
 
 /// Impacts at the start of the step. True if there were any.
 bool TimeStepper::strike(const StepInput& in) {
+  impacts_->chain().reset_statistics();
   prepare(in);
   parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
   return impacts_->resolve(in);
@@ -132,16 +134,21 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
   const std::span<const StepIsland> islands = parts_.constraints.islands();
   if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
   projection_.lower_rebounds(in, islands);
-  if (turning_ != nullptr) turning_->begin(islands, in.step, parts_.located.on());
+  if (turning_ != nullptr) {
+    turning_->begin(islands, in.step, parts_.located.on());
+    parts_.contacts.begin_passes(in.repeats);
+  }
   advance_all(in);
   passes_ = 1;
-  while (turning_ != nullptr &&
-         turning_->turn(in, parts_.trial, islands, balance_.result().tally.worst_residual)) {
+  while (turning_ != nullptr && turning_->turn(in, parts_.trial, islands, parts_.tolerance(in),
+                                               balance_.result().tally.worst_residual)) {
     ++passes_;
+    parts_.contacts.begin_next_pass();
     try {
       advance_all(in);
     } catch (const RunError&) {
       turning_->give_up(islands);
+      parts_.contacts.begin_passes(false);
       advance_all(in);
       break;
     }

@@ -38,6 +38,12 @@
 
 namespace carom {
 
+/// A step that is part of a longer one.
+struct StepPart {
+  double share = 1.0;    ///< of the whole step: velocities of the part are as exact as those of the whole
+  bool repeats = false;  ///< the last step began at the same state and companion, but had another length
+};
+
 /// Advances states of one assembly. Owns workspaces only: what a step depends on is state, companion,
 /// options.
 class CAROM_API TimeStepper {
@@ -48,9 +54,8 @@ public:
 
   /// Makes one step of length `step` [s] whose end is called `end_time`. On success state and companion are
   /// those at its end and `report` tells what happened; on an error none of the three has changed.
-  /// \param share of the step of which this is a part; its velocities are as exact as those of the whole
   void step(State& state, Companion& companion, double step, double end_time, StepReport& report,
-            double share = 1.0);
+            const StepPart& part = {});
 
   /// Options.
   [[nodiscard]] const TimeStepping& options() const { return parts_.options; }

@@ -138,13 +138,45 @@ TEST_F(FactoredIsland, StartsFromImpulsesOfTheCaller) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(one.rows); ++i) *impulses++ = answer[first + i];
     }
   };
-  next.build(list, before_.data(), &masses_, start);
+  IslandStart from_caller;
+  from_caller.impulses = start;
+  next.build(list, before_.data(), &masses_, from_caller);
   ASSERT_EQ(asked.size(), list.size());
   for (std::size_t c = 0; c < list.size(); ++c) EXPECT_EQ(asked[c], &list[c]);
   next.set_free_velocity(free_.data());
   ASSERT_TRUE(next.solve(chain_).usable());
   EXPECT_EQ(next.report().iterations, 0);
   EXPECT_TRUE(std::equal(answer.begin(), answer.end(), next.impulses().begin()));
+}
+
+// Rows that have turned a little: the answer before, and the equations that solved it, are where it starts.
+TEST_F(FactoredIsland, StartsFromItsOwnAnswer) {
+  const ConstraintSet all = constraints(40, 4);
+  const std::span<const Constraint> list(all.begin(), all.end());
+  for (const std::size_t from : {std::size_t{2}, list.size() + 1}) {  // in factors, and with W in full
+    IslandProblem island({.factored_from = from});
+    IslandStart start;
+    start.keeps_equations = true;
+    island.build(list, before_.data(), &masses_, start);
+    island.set_free_velocity(free_.data());
+    ASSERT_TRUE(island.solve(chain_).usable());
+    const std::vector<double> cold(island.impulses().begin(), island.impulses().end());
+    std::vector<double> moved = free_;
+    for (double& velocity : moved) velocity *= 1.0 + 1e-6;
+    start.from_answer = true;
+    island.build(list, before_.data(), &masses_, start);
+    EXPECT_TRUE(std::equal(cold.begin(), cold.end(), island.impulses().begin()));
+    island.set_free_velocity(moved.data());
+    ASSERT_TRUE(island.solve(chain_).usable());
+    EXPECT_LE(island.report().residual, accepted_residual);
+    EXPECT_FALSE(island.changed_modes());
+    if (from == 2) {
+      EXPECT_EQ(island.report().iterations, 0);  // no sweep
+    }
+    // Of other constraints, or of fewer: from zero.
+    island.build(list.first(list.size() - 1), before_.data(), &masses_, start);
+    for (const double impulse : island.impulses()) EXPECT_EQ(impulse, 0.0);
+  }
 }
 
 TEST_F(FactoredIsland, HasTheSameNumbersStatedInOneGo) {
