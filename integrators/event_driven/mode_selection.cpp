@@ -78,8 +78,8 @@ void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
     if (c.at.normals > 0 && c.normal <= at.margin + noise && c.normal <= noise) {
       releasing_.push_back(c.pair);
     } else if (c.sticks() &&
-               c.margin_scale() * (c.friction * c.normal - std::abs(c.tangential)) <= at.margin + noise) {
-      exhausted_.push_back({c.pair, c.tangential, noise});
+               c.margin_scale() * (c.friction * c.normal - c.tangential_force()) <= at.margin + noise) {
+      exhausted_.push_back({c.pair, c.tangential[0], noise});
     }
   }
 }
