@@ -37,6 +37,7 @@ set(carom_public_headers
     core/body_kind.h
     core/constraint.h
     core/contact_filter.h
+    core/contact_frame.h
     core/difference_derivatives.h
     core/dot.h
     core/dynamics/joint_closure.h

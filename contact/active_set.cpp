@@ -32,7 +32,7 @@ double ActiveContact::friction_at(const Constraint& where, const double* velocit
   if (frictionless) return 0.0;
   if (sticks()) return where.law.sticking_friction();
   if (!where.law.falls_with_speed()) return where.law.friction;
-  return where.law.sliding_friction(slip_sign() * where.tangential_velocity(velocities));
+  return where.law.sliding_friction(velocity_along(where, slip_direction(), velocities));
 }
 
 void ActiveSet::bind(const Assembly& assembly, ComponentsResponse& response) {
@@ -121,7 +121,7 @@ int ActiveSet::row_of(const Row& row, const Constraint& at) { return row.tangent
 double ActiveSet::lever(std::size_t contact) const {
   if (contact + 1 >= contacts_.size() || !contacts_[contact + 1].at.attached) return 0.0;
   const ActiveContact& rolling = contacts_[contact + 1];
-  return -rolling.slip_sign() * rolling.friction * rolling.at.of_joint.length;
+  return rolling.friction_ratio(0) * rolling.at.of_joint.length;  // it has one row, along the spin
 }
 
 /// Rows of one group, and the products of these with what forces along their columns do.
@@ -140,8 +140,9 @@ void ActiveSet::state_equations(const Assembly& assembly, std::size_t first, std
   for (const Row& row : rows) {
     const ActiveContact& contact = contacts_[row.contact];
     const bool turned = !row.tangent && slips;
-    const double ratio = turned ? -contact.slip_sign() * contact.friction : 0.0;
-    directions.push_back({&contact.at, row_of(row, contact.at), ratio, turned ? lever(row.contact) : 0.0});
+    TangentDirection::Numbers ratios{};
+    if (turned) for_tangents(contact.at, [&](std::size_t k, int) { ratios[k] = contact.friction_ratio(k); });
+    directions.push_back({&contact.at, row_of(row, contact.at), ratios, turned ? lever(row.contact) : 0.0});
   }
   memory_->exponents.clear();
   if (answers_with_joints(first, last)) {
@@ -218,13 +219,13 @@ void ActiveSet::add_dry_friction(std::size_t first, std::size_t last, double* ac
     if (!contact.at.has_given_bound()) continue;
     contact.normal = contact.at.of_joint.friction_bound;
     if (contact.sticks()) continue;
-    contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
+    contact.set_sliding_friction();
     JointConstraints& joints = *response_->joints_of(contact.at.body());
     const Range v = joints.velocities();
     std::vector<double>& load = memory_->load;
     load.resize(v.end);
     std::fill(load.begin() + v.begin, load.begin() + v.end, 0.0);
-    contact.at.add_force(0.0, contact.tangential, load.data());
+    contact.add_force(load.data());
     joints.apply_inverse_mass(load.data());
     joints.project(JointLevel::change, load.data());
     for (Index k = v.begin; k < v.end; ++k) acceleration[k] += load[k];
@@ -252,12 +253,12 @@ bool ActiveSet::react(std::size_t first, std::size_t last, double* acceleration)
   }
   for (std::size_t i = 0; i < n; ++i) {
     ActiveContact& contact = contacts_[rows[i].contact];
-    (rows[i].tangent ? contact.tangential : contact.normal) = unknown[i];
+    (rows[i].tangent ? contact.tangential[0] : contact.normal) = unknown[i];
   }
   for (std::size_t i = first; i < last; ++i) {
     ActiveContact& contact = contacts_[i];
     contact.normal = contacts_[i - contact.at.attached].normal;
-    if (!contact.sticks()) contact.tangential = -contact.slip_sign() * contact.friction * contact.normal;
+    if (!contact.sticks()) contact.set_sliding_friction();
   }
   memory_->delassus.add_response(unknown, acceleration);
   if (factors.rank() < n) memory_->margins.add(first, last, rows, factors);

@@ -3,7 +3,7 @@
 /// \file
 /// Who takes part in a contact and where it is, as records of contacts and events of both modes have it.
 
-#include <carom/contact/contact_point.h>
+#include <carom/contact/frame_of_contact.h>
 #include <carom/core/assembly.h>
 #include <carom/core/constraint.h>
 #include <carom/core/ids.h>
@@ -30,8 +30,7 @@ void write_place(const Constraint& at, const Assembly& assembly, const double* q
   out.key = at.key;
   out.directions = at.rows;
   out.gap = at.gap;
-  out.point = out.normal = {};
-  find_point_of_contact(at, q + assembly.layout()->bodies()[at.body()].q, out.point, out.normal);
+  read_contact_frame(at, q + assembly.layout()->bodies()[at.body()].q, out);
 }
 
 }  // namespace carom

@@ -169,7 +169,7 @@ void Delassus::write_column(std::size_t j) {
   const ImpulseDirection& direction = directions_[j];
   const Constraint& at = *direction.constraint;
   const double* number = at.row(direction.row);
-  const double* tangent = at.row(at.tangent_row());
+  int before = 0;  // columns of the blocks before
   const Constraint::Block* block = at.blocks.data();
   for (int b = 0; b < at.bodies; ++b, ++block) {
     const Part* const part = common_.empty() ? part_of(j, block->v) : nullptr;
@@ -177,13 +177,15 @@ void Delassus::write_column(std::size_t j) {
                                               : part->begin + (block->v - part->v.begin);
     double* const x = responses_.data() + begin;
     std::copy_n(number, block->columns, x);
-    if (direction.ratio != 0.0) {
-      for (int c = 0; c < block->columns; ++c) x[c] += direction.ratio * tangent[c];
-    }
+    for_tangents(at, [&](std::size_t k, int row) {
+      if (direction.ratios[k] == 0.0) return;
+      const double* const tangent = at.row(row) + before;
+      for (int c = 0; c < block->columns; ++c) x[c] += direction.ratios[k] * tangent[c];
+    });
     if (direction.lever != 0.0 && block->columns == static_cast<int>(one_body::of_planar_body))
       x[one_body::of_planar_body - 1] += b == 0 ? direction.lever : -direction.lever;
     number += block->columns;
-    tangent += block->columns;
+    before += block->columns;
   }
 }
 

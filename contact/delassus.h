@@ -5,6 +5,7 @@
 /// bodies to impulses. It is made here only, from any response (core/dynamics/body_response.h), and goes back
 /// to the bodies as B H^T P.
 
+#include <carom/contact/tangent_direction.h>
 #include <carom/core/constraint.h>
 #include <carom/core/dynamics/body_response.h>
 #include <carom/core/export.h>
@@ -15,13 +16,13 @@
 
 namespace carom {
 
-/// A row of a constraint, and the column along which its impulse acts: that row, a multiple of the first
-/// tangential one (of a contact that slips: the edge of its cone of friction), and a moment about the contact
-/// (of one that rolls: the bound of its rolling resistance).
+/// A row of a constraint, and the column along which its impulse acts: that row, multiples of the tangential
+/// ones (of a contact that slips: the edge of its cone of friction), and a moment about the contact (of one
+/// that rolls: the bound of its rolling resistance).
 struct ImpulseDirection {
   const Constraint* constraint = nullptr;  ///< must outlive the matrix
   int row = 0;                             ///< of the constraint
-  double ratio = 0.0;                      ///< of the first tangential row in the column
+  TangentDirection::Numbers ratios{};      ///< of the tangential rows in the column
   double lever = 0.0;  ///< moment on the first body, and against the second, by the impulse [m]
 };
 

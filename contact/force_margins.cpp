@@ -35,7 +35,18 @@ double sum_of_slopes(double a, double b) {
   return std::abs(sum) <= no_slope * (std::abs(a) + std::abs(b)) ? 0.0 : sum;
 }
 
-/// Lines of a contact: normal force, and both edges of friction, or of the moment, where it sticks.
+/// Adds a multiple of a null vector to the forces of contacts.
+void add_along(std::span<ActiveContact> contacts, double shift, const double* vector) {
+  for (ActiveContact& contact : contacts) {
+    contact.normal += shift * vector[0];
+    for (std::size_t k = 0; k < contact.tangential.size(); ++k)
+      contact.tangential[k] += shift * vector[1 + k];
+    vector += numbers_of_force;
+  }
+}
+
+/// Lines of a contact in the plane: normal force, and both edges of friction, or of the moment, where it
+/// sticks.
 std::size_t lines_of(const ActiveContact& contact) {
   return std::size_t{contact.at.normals} + (contact.sticks() ? 2U : 0U);
 }
@@ -68,19 +79,22 @@ void ForceMargins::append_vectors(std::span<const ActiveContact> contacts, const
   for (std::size_t free = factors.rank(); free < factors.size(); ++free) {
     factors.null_vector(free, work_);
     vectors_.push_back({first, last, numbers_.size()});
-    numbers_.resize(numbers_.size() + 2 * (last - first), 0.0);
+    numbers_.resize(numbers_.size() + numbers_of_force * (last - first), 0.0);
     double* const vector = numbers_.data() + vectors_.back().begin;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      double* const of_contact = vector + 2 * (rows[i].contact - first);
+      double* const of_contact = vector + numbers_of_force * (rows[i].contact - first);
       of_contact[rows[i].tangent ? 1 : 0] = work_[i];
     }
     for (std::size_t i = first; i < last; ++i) {
       const ActiveContact& contact = contacts[i];
-      double* const of_contact = vector + 2 * (i - first);
-      of_contact[0] = of_contact[-2 * contact.at.attached];
-      if (!contact.sticks()) of_contact[1] = -contact.slip_sign() * contact.friction * of_contact[0];
+      double* const of_contact = vector + numbers_of_force * (i - first);
+      if (contact.at.attached) of_contact[0] = vector[numbers_of_force * (i - 1 - first)];
+      if (contact.sticks()) continue;
+      for_tangents(contact.at, [&](std::size_t k, int) {
+        of_contact[1 + k] = contact.friction_ratio(k) * of_contact[0];
+      });
     }
-    remove_rounding({vector, 2 * (last - first)});
+    remove_rounding({vector, numbers_of_force * (last - first)});
   }
 }
 
@@ -89,13 +103,13 @@ void ForceMargins::collect(std::span<const ActiveContact> contacts, const double
   lines_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ActiveContact& c = contacts[i];
-    const double dn = vector ? vector[2 * i] : 0.0;
-    const double dt = vector ? vector[2 * i + 1] : 0.0;
+    const double dn = vector ? vector[numbers_of_force * i] : 0.0;
+    const double dt = vector ? vector[numbers_of_force * i + 1] : 0.0;
     if (c.at.normals > 0) lines_.push_back({c.normal, dn});
     if (!c.sticks()) continue;
     const double scale = c.margin_scale();
     for (const double side : {-1.0, 1.0}) {
-      lines_.push_back({scale * (c.friction * c.normal + side * c.tangential),
+      lines_.push_back({scale * (c.friction * c.normal + side * c.tangential[0]),
                         scale * sum_of_slopes(c.friction * dn, side * dt)});
     }
   }
@@ -110,7 +124,7 @@ void ForceMargins::bound_wedged(std::span<const ActiveContact> contacts) {
   }
   double size = 0.0;
   for (const ActiveContact& contact : contacts) {
-    size += std::abs(contact.normal) + std::abs(contact.tangential);
+    size += std::abs(contact.normal) + contact.tangential_force();
   }
   lines_.push_back({size, 0.0});
 }
@@ -158,10 +172,7 @@ void ForceMargins::follow(std::span<ActiveContact> contacts, const NullVector& o
       }
     }
   }
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    contacts[i].normal += best_shift * vector[2 * i];
-    contacts[i].tangential += best_shift * vector[2 * i + 1];
-  }
+  add_along(contacts, best_shift, vector);
 }
 
 /// States lines a_i + s_i x over the margins of a group, x along its vectors [from, to).
@@ -174,12 +185,12 @@ void ForceMargins::state_lines(std::span<const ActiveContact> contacts, std::siz
   };
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ActiveContact& c = contacts[i];
-    const std::size_t at = 2 * i;
+    const std::size_t at = numbers_of_force * i;
     if (c.at.normals > 0) line(c.normal, [&](const double* vector) { return vector[at]; });
     if (!c.sticks()) continue;
     const double scale = c.margin_scale();
     for (const double side : {-1.0, 1.0}) {
-      line(scale * (c.friction * c.normal + side * c.tangential), [&](const double* vector) {
+      line(scale * (c.friction * c.normal + side * c.tangential[0]), [&](const double* vector) {
         return scale * sum_of_slopes(c.friction * vector[at], side * vector[at + 1]);
       });
     }
@@ -191,7 +202,7 @@ void ForceMargins::state_lines(std::span<const ActiveContact> contacts, std::siz
 bool ForceMargins::follow_all(std::span<ActiveContact> contacts, std::size_t from, std::size_t to,
                               bool mark) {
   double size = 0.0;
-  for (const ActiveContact& c : contacts) size += std::abs(c.normal) + std::abs(c.tangential);
+  for (const ActiveContact& c : contacts) size += std::abs(c.normal) + c.tangential_force();
   if (!(size > 0.0) || !std::isfinite(size)) return false;
   state_lines(contacts, from, to);
   if (!program_.solve(size)) return false;
@@ -204,11 +215,7 @@ bool ForceMargins::follow_all(std::span<ActiveContact> contacts, std::size_t fro
   }
   for (std::size_t k = 0; k < to - from; ++k) {
     const double shift = program_.x()[k];
-    const double* const vector = numbers_.data() + vectors_[from + k].begin;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      contacts[i].normal += shift * vector[2 * i];
-      contacts[i].tangential += shift * vector[2 * i + 1];
-    }
+    add_along(contacts, shift, numbers_.data() + vectors_[from + k].begin);
   }
   return true;
 }

@@ -37,13 +37,15 @@ public:
   void distribute(std::span<ActiveContact> contacts, bool mark);
   /// True if there are null vectors.
   [[nodiscard]] bool has_vectors() const { return count_ > 0; }
-  /// Calls f(first, numbers) for every null vector, numbers: a normal and a tangential force for each contact
-  /// of a group in turn, beginning with the contact `first`. \param contacts all, as they were added
+  /// Calls f(first, numbers) for every null vector, numbers: a normal force and the tangential ones
+  /// (numbers_of_force) for each contact of a group in turn, beginning with the contact `first`.
+  /// \param contacts all, as they were added
   template <class F>
   void for_vectors(std::span<const ActiveContact> contacts, F&& f) {
     find_vectors(contacts);
     for (const NullVector& vector : vectors_) {
-      f(vector.first, std::span(numbers_).subspan(vector.begin, 2 * (vector.last - vector.first)));
+      f(vector.first,
+        std::span(numbers_).subspan(vector.begin, numbers_of_force * (vector.last - vector.first)));
     }
   }
   /// Least margin of some contacts, as their forces are.

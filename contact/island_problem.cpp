@@ -221,16 +221,18 @@ void IslandProblem::update_bound(std::size_t constraint) {
          .upper = slides_[constraint] != 0.0 ? slides : bound};
 }
 
-void IslandProblem::slide(std::size_t constraint, double ratio) {
+void IslandProblem::slide(std::size_t constraint, const TangentDirection& slip) {
   const Constraint& at = constraints_[constraint];
   if (at.tangents() == 0) return;
   if (at.has_given_bound()) {
-    slides_[constraint] = ratio;
+    slides_[constraint] = -slip[0] * at.friction;  // a joint has one coordinate
     update_bound(constraint);
   } else {
-    RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint] + at.tangent_row())];
-    set.kind = SetKind::proportional;
-    set.coefficient = ratio;
+    for_tangents(at, [&](std::size_t k, int row) {
+      RowSet& set = problem_.sets()[static_cast<std::size_t>(first_row_[constraint] + row)];
+      set.kind = SetKind::proportional;
+      set.coefficient = -slip[k] * at.friction;
+    });
   }
   problem_.group();
 }

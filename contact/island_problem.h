@@ -15,6 +15,7 @@
 #include <carom/contact/solvers/impact_solver.h>
 #include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/solver_chain.h>
+#include <carom/contact/tangent_direction.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 #include <carom/core/function_ref.h>
@@ -80,10 +81,10 @@ public:
   void respond(BodyResponse& response);
   /// Takes note of another OfJoint::friction_bound of a constraint; of one without a given bound: nothing.
   void update_bound(std::size_t constraint);
-  /// Makes a planar contact, friction in a joint, or rolling resistance slip whatever its tangential
-  /// velocity: P_t = ratio P_n, with the normal impulse, or given bound, that bounds P_t. A limit stays as it
-  /// is.
-  void slide(std::size_t constraint, double ratio);
+  /// Makes a contact, friction in a joint, or rolling resistance slip whatever its tangential velocity:
+  /// P_t = -mu slip P_n along each tangential row, with the normal impulse, or given bound, that bounds P_t.
+  /// A limit stays as it is. \param slip direction, not zero
+  void slide(std::size_t constraint, const TangentDirection& slip);
   /// Solves by a law of impact other than Newton's from now on: b is that of an impact. Null: by Newton's.
   void use(ImpactSolver* solver, ImpactLaw law) { impact_ = {solver, law}; }
   /// Makes b from the velocities that the step would end with if no constraint acted, against those of the
@@ -158,7 +159,7 @@ private:
   std::vector<ContactMode> modes_;  // by constraint; empty where none is attached to another
   std::vector<int> first_row_;
   FactorScratch scratch_;
-  std::vector<double> slides_;  // by constraint: where the bound is given the ratio of slide(), or 0
+  std::vector<double> slides_;  // by constraint: where the bound is given -mu slip of slide(), or 0
   std::vector<double> before_, restitution_, xi_;
 };
 

@@ -34,9 +34,9 @@ void answer_alone(std::span<const ImpulseDirection> directions, const double* ma
     // In registers until they are divided.
     std::array<double, S> column;
     for (std::size_t c = 0; c < S; ++c) column[c] = row[c];
-    if (direction.ratio != 0.0) {
+    if (direction.ratios[0] != 0.0) {  // a body in the plane has one tangent
       const double* const tangent = row_of_one<S>(at, at.tangent_row());
-      for (std::size_t c = 0; c < S; ++c) column[c] += direction.ratio * tangent[c];
+      for (std::size_t c = 0; c < S; ++c) column[c] += direction.ratios[0] * tangent[c];
     }
     if constexpr (S == of_planar_body) {
       if (direction.lever != 0.0) column[S - 1] += direction.lever;

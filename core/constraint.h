@@ -282,12 +282,6 @@ public:
   [[nodiscard]] double tangential_acceleration(const double* accelerations) const {
     return acceleration(tangent_row(), accelerations);
   }
-  /// Adds a force, or impulse, in the plane to loads. \param normal of a row without one: nothing
-  /// \param out an array over all velocities
-  void add_force(double normal, double tangential, double* out) const {
-    if (normals > 0) add_transposed(0, normal, out);
-    add_transposed(tangent_row(), tangential, out);
-  }
   /// Velocity along row i after the time step or impact. \param velocities of all bodies, then
   [[nodiscard]] double velocity_after(int i, const double* velocities) const {
     return times(i, velocities) - surface_velocity_after[static_cast<std::size_t>(i)];

@@ -23,8 +23,7 @@ struct Action {
       throw ModelError("force_on: a contact has " + std::to_string(at.directions) +
                        " directions; allowed: contacts in the plane");
     }
-    const Vec<2> normal(at.normal[0], at.normal[1]), tangent(normal[1], -normal[0]);
-    sum = sign * (along[0] * normal + along[1] * tangent);
+    sum = sign * at.vector_of(along).head<2>();
     moment = at.point[0] * sum[1] - at.point[1] * sum[0] + sign * rolling;
   }
 };

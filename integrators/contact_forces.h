@@ -27,7 +27,7 @@ struct PartForce {
 };
 
 /// Contact on a body; the opposite acts on what it touches. Zero where nothing touches it. Throws ModelError
-/// for a report of a model in space, whose records have no tangents.
+/// for a report of a model in space: the sums are of the plane.
 [[nodiscard]] CAROM_API PartForce force_on(const StepReport& report, BodyId body);
 /// Contact on a shape on ground.
 [[nodiscard]] CAROM_API PartForce force_on(const StepReport& report, ObstacleId obstacle);

@@ -168,7 +168,8 @@ JointReaction ClockGroup::reaction(const JointKind& kind, Index slot, JointId jo
     const auto friction = std::find_if(closed.begin(), closed.end(), [&](const ActiveContact& contact) {
       return contact.at.key.is_of_joint() && contact.at.key.a.serial == joint.serial;
     });
-    const double force = friction == closed.end() ? 0.0 : friction->at.of_joint.length * friction->tangential;
+    const double force =
+        friction == closed.end() ? 0.0 : friction->at.of_joint.length * friction->tangential[0];
     return kind.reaction(at.joint_view(), slot, &force);
   }
   const std::span<const double> multipliers = parts_.motion.joints().multipliers(at, closed);
@@ -188,14 +189,17 @@ void ClockGroup::list_forces(std::vector<LastingContact>& out) {
   const Assembly& assembly = *parts_.motion.model().assembly;
   for (const ActiveContact& contact : parts_.motion.active().list()) {
     if (contact.at.attached) {
-      out.back().rolling_moment = contact.at.of_joint.length * contact.tangential;
+      out.back().rolling_moment = contact.at.of_joint.length * contact.tangential[0];
     } else if (!contact.at.key.is_of_joint()) {
       LastingContact& force = out.emplace_back();
       const Constraint& closed = contact.at;
       write_place(closed, assembly, at.state.q.data(), force);
-      force.velocity = {closed.normal_velocity(at.state.v.data()),
-                        closed.tangential_velocity(at.state.v.data())};
-      force.force = {contact.normal, contact.tangential};
+      force.velocity[0] = closed.normal_velocity(at.state.v.data());
+      force.force[0] = contact.normal;
+      for_tangents(closed, [&](std::size_t k, int row) {
+        force.velocity[1 + k] = closed.velocity(row, at.state.v.data());
+        force.force[1 + k] = contact.tangential[k];
+      });
       force.mode = contact.mode;
     }
   }

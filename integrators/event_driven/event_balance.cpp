@@ -1,7 +1,7 @@
 // Problem: every impulse does its work on a line of the ledger, and is recorded.
 
 #include <carom/contact/contact_parties.h>
-#include <carom/contact/contact_point.h>
+#include <carom/contact/frame_of_contact.h>
 #include <carom/contact/impulse_map.h>
 #include <carom/integrators/event_driven/event_balance.h>
 
@@ -161,9 +161,7 @@ double EventBalance::book(const SolvedImpact& impact, const Assembly& assembly) 
     }
     if (keeping.records) {
       event.motions = motions_[c];
-      const PointOfContact place = point_of_contact(contact, event.motions[0].position.data());
-      event.point = place.point;
-      event.normal = place.normal;
+      read_contact_frame(contact, event.motions[0].position.data(), event);
       event.gap = contact.gap / contact.of_joint.length;
       set_after(contact, impact.velocity, assembly, event.motions);
     }

@@ -76,9 +76,9 @@ Remainder remainder_of(SearchedStep& step, const MotionSample& at, const Event& 
   SmoothMotion& motion = step.motion;
   if (predicted.guard == Guard::slip) {
     const ActiveContact& closed = motion.active().list()[predicted.which];
-    const double sign = closed.slip_sign();
-    return {sign * closed.at.tangential_velocity(velocity) - step.ends.slip_level(predicted.which),
-            sign * closed.at.tangential_acceleration(at.acceleration.data()),
+    const TangentDirection slip = closed.slip_direction();
+    return {velocity_along(closed.at, slip, velocity) - step.ends.slip_level(predicted.which),
+            acceleration_along(closed.at, slip, at.acceleration.data()),
             step.scales.noise_of(motion, closed.at) / 16.0, true};
   }
   if (predicted.guard == Guard::feature) {

@@ -17,8 +17,7 @@ ContactRecord contact_of(const EventRecord& event, int dimension) {
   entry.directions = limit ? 1 : dimension;
   static_cast<ImpactNote&>(entry) = event;
   entry.time = event.time;
-  entry.point = event.point;
-  entry.normal = event.normal;
+  static_cast<ContactFrame&>(entry) = event;
   entry.gap = event.gap;
   entry.velocity_before = event.velocity_before;
   entry.velocity_after = event.velocity_after;

@@ -47,7 +47,7 @@ std::span<const double> JointReactions::multipliers(const MotionSample& at,
   std::vector<double>& answer = memory_->closure.of_velocity;
   copy(velocities_, at.loads(), answer);
   for (const ActiveContact& contact : contacts) {
-    contact.at.add_force(contact.normal, contact.tangential, answer.data());
+    contact.add_force(answer.data());
   }
   for (const GroupJoints::Part& part : joints_->rows.parts()) {
     assembly_->for_bodies(part.component, [&](const BodyKind& kind, Range slots, Index, Index first, Index) {

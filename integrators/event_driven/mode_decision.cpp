@@ -68,8 +68,9 @@ void ModeDecision::list_contacts(std::span<Candidate> candidates) {
       contact.surface_velocity[row] = contact.surface_velocity_after[row] = -contact.drift[row];
     }
     contact.remove_restitution();
-    contact.friction = slips_[i].sign == 0.0 ? contact.law.sticking_friction()
-                                             : contact.law.sliding_friction(std::abs(candidates[i].slip));
+    contact.friction = slips_[i].direction.is_zero()
+                           ? contact.law.sticking_friction()
+                           : contact.law.sliding_friction(std::abs(candidates[i].slip));
   }
 }
 
@@ -84,8 +85,8 @@ bool ModeDecision::bounds_follow(SmoothMotion& motion) const {
 void ModeDecision::build(SmoothMotion& motion, const MotionSample& now) {
   motion.joints().build(problem_, contacts_, zero_.data());
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const double sign = slips_[taking_part_[c]].sign;
-    if (sign != 0.0) problem_.slide(c, -sign * contacts_[c].friction);
+    const TangentDirection& slip = slips_[taking_part_[c]].direction;
+    if (!slip.is_zero()) problem_.slide(c, slip);
   }
   problem_.set_free_velocity(now.acceleration.data());
   size_ = size_without_contact(problem_);
@@ -144,19 +145,20 @@ void ModeDecision::read_modes(std::span<Candidate> candidates, std::span<const d
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const std::size_t i = taking_part_[c];
     if (contacts_[c].attached) {
-      candidates[i].mode = mode_of_rolling(problem_, c, candidates[i - 1].mode, slips_[i].sign, force);
+      candidates[i].mode = mode_of_rolling(problem_, c, candidates[i - 1].mode, slips_[i].direction, force);
       continue;
     }
     const ContactMode found = problem_.modes()[c];
     // Friction in a joint never opens.
     const bool has_given_bound = contacts_[c].has_given_bound();
-    if (has_given_bound && slips_[i].sign == 0.0) {
+    if (has_given_bound && slips_[i].direction.is_zero()) {
       candidates[i].mode = found == ContactMode::open ? ContactMode::stick : found;
       continue;
     }
     const double normal = has_given_bound ? 1.0 : force[static_cast<std::size_t>(problem_.first_row(c))];
-    if (slips_[i].sign != 0.0) {
-      candidates[i].mode = normal > 0.0 ? mode_by_sign(slips_[i].sign) : ContactMode::open;
+    if (!slips_[i].direction.is_zero()) {
+      candidates[i].mode =
+          normal > 0.0 ? slips_[i].direction.mode(contacts_[c].tangents()) : ContactMode::open;
     } else {
       candidates[i].mode = found;
     }
@@ -220,7 +222,7 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
       const double along = contact.tangential_acceleration(acceleration_.data());
       if (std::abs(along) <= SlipDirections::no_acceleration * size_) {
         candidates[i].mode = ContactMode::stick;
-      } else if (slips_[i].sign == 0.0) {
+      } else if (slips_[i].direction.is_zero()) {
         candidates[i].mode = mode_by_sign(along);
       }
     }
@@ -228,12 +230,13 @@ void ModeDecision::complete_modes(SmoothMotion& motion, MotionSample& now, std::
     const int normal = problem_.first_row(c);
     if (problem_.problem().w(normal, normal) == 0.0) continue;  // joints hold it fast, nothing acts
     if (contact.normal_acceleration(acceleration_.data()) > SlipDirections::no_acceleration * size_) continue;
-    const double along = contact.tangential_acceleration(acceleration_.data());
-    double sign = slips_[i].sign;
-    if (sign == 0.0 && std::abs(along) > SlipDirections::no_acceleration * size_) sign = along;
+    const TangentDirection::Numbers along = tangential_accelerations(contact, acceleration_.data());
+    TangentDirection slip = slips_[i].direction;
+    if (slip.is_zero() && std::hypot(along[0], along[1]) > SlipDirections::no_acceleration * size_)
+      slip = TangentDirection::of(along);
     // Where forces are not unique its friction would change the motion that was decided.
-    if (sign != 0.0 && contact.friction != 0.0 && !bounds_follow(motion)) continue;
-    candidates[i].mode = mode_by_sign(sign);
+    if (!slip.is_zero() && contact.friction != 0.0 && !bounds_follow(motion)) continue;
+    candidates[i].mode = slip.mode(contact.tangents());
     added.push_back(i);
   }
   follow_contacts(slips_, candidates);

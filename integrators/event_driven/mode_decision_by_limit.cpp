@@ -23,9 +23,11 @@ Decision ModeDecision::solve_as_limit(SmoothMotion& motion, MotionSample& now,
   }
   const double fast = unbounded * size_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const double sign = slips_[taking_part_[c]].sign;
+    const TangentDirection& slip = slips_[taking_part_[c]].direction;
     if (contacts_[c].friction == 0.0) continue;
-    contacts_[c].surface_velocity_after[static_cast<std::size_t>(contacts_[c].tangent_row())] -= sign * fast;
+    for_tangents(contacts_[c], [&](std::size_t k, int row) {
+      contacts_[c].surface_velocity_after[static_cast<std::size_t>(row)] -= slip[k] * fast;
+    });
   }
   motion.joints().build(problem_, contacts_, zero_.data());
   problem_.set_free_velocity(now.acceleration.data());
@@ -38,8 +40,8 @@ Decision ModeDecision::solve_as_limit(SmoothMotion& motion, MotionSample& now,
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     SlipDirection& slide = slips_[taking_part_[c]];
     const Candidate& candidate = candidates[taking_part_[c]];
-    if (slide.sign == 0.0 || contacts_[c].friction == 0.0) continue;
-    if (slide.sign * candidate.at.tangential_acceleration(acceleration_.data()) > -0.5 * fast) continue;
+    if (slide.direction.is_zero() || contacts_[c].friction == 0.0) continue;
+    if (acceleration_along(candidate.at, slide.direction, acceleration_.data()) > -0.5 * fast) continue;
     (candidate.slip != 0.0 ? stops : reverts) = true;
     if (candidate.slip == 0.0) slide = {.reverted = true};  // it has no velocity that impulses could stop
   }

@@ -1,8 +1,8 @@
 // Problem: modes of all that touches, where events have just ended some, and forces may not exist.
 
-#include <carom/contact/contact_point.h>
 #include <carom/contact/detection/pair_rows.h>
 #include <carom/contact/detection/rolling_resistance.h>
+#include <carom/contact/frame_of_contact.h>
 #include <carom/contact/pressed_bodies.h>
 #include <carom/core/dynamics/answering_bodies.h>
 #include <carom/integrators/event_driven/dead_points.h>
@@ -24,7 +24,7 @@ std::array<double, 2> acceleration_of_ground(const Constraint& contact, const Ev
   const GroundMotion* const motion = ground_motion_of(*model.detector, contact, at.now.places);
   if (motion == nullptr || contact.attached) return {};
   const BodySlot slot = model.assembly->layout()->bodies()[contact.body()];
-  const PointOfContact place = point_of_contact(contact, at.now.state.q.data() + slot.q);
+  const ContactFrame place = frame_of_contact(contact, at.now.state.q.data() + slot.q);
   const Vec<2> acceleration =
       PairSide::of_motion(*motion, 0.0).acceleration_at({place.point[0], place.point[1]});
   const double *const n = contact.row(0), *const t = contact.row(1);
@@ -78,8 +78,8 @@ void ModeSelection::note(const Event& event, ActiveSet& active, double noise) {
     if (c.at.normals > 0 && c.normal <= at.margin + noise && c.normal <= noise) {
       releasing_.push_back(c.pair);
     } else if (c.sticks() &&
-               c.margin_scale() * (c.friction * c.normal - std::abs(c.tangential)) <= at.margin + noise) {
-      exhausted_.push_back({c.pair, c.tangential, noise});
+               c.margin_scale() * (c.friction * c.normal - c.tangential_force()) <= at.margin + noise) {
+      exhausted_.push_back({c.pair, c.tangential[0], noise});
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <carom/integrators/event_driven/modes_by_motion.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -127,6 +128,9 @@ bool law_allows(std::span<const ActiveContact> closed, std::span<const ForceMarg
 
 namespace {
 
+/// Normal and tangential numbers of one contact.
+using ForceNumbers = std::array<double, numbers_of_force>;
+
 /// Writes numbers of closed contacts, normal and tangential, to the rows of a problem; 0 elsewhere.
 template <class F>
 void place_numbers(const IslandProblem& problem, std::span<const ActiveContact> closed, F&& numbers_of,
@@ -137,10 +141,11 @@ void place_numbers(const IslandProblem& problem, std::span<const ActiveContact> 
   for (std::size_t c = 0; c < contacts.size() && at < closed.size(); ++c) {
     if (contacts[c].key != closed[at].at.key) continue;
     const auto row = static_cast<std::size_t>(problem.first_row(c));
-    const auto [normal, tangential] = numbers_of(at++);
-    rows[row] = normal;  // of a row without normal the tangential number takes its place
-    if (contacts[c].tangents() > 0)
-      rows[row + static_cast<std::size_t>(contacts[c].tangent_row())] = tangential;
+    const ForceNumbers numbers = numbers_of(at++);
+    rows[row] = numbers[0];  // of a row without normal the tangential number takes its place
+    for_tangents(contacts[c], [&](std::size_t k, int tangent) {
+      rows[row + static_cast<std::size_t>(tangent)] = numbers[1 + k];
+    });
   }
 }
 
@@ -166,9 +171,11 @@ double motion_left_open(const IslandProblem& problem, std::span<const ActiveCont
     double size = 0.0;
     for (const double number : numbers) size = std::max(size, std::abs(number));
     const auto change = [&](std::size_t i) {
-      if (i < first || 2 * (i - first) >= numbers.size()) return std::pair(0.0, 0.0);
-      const double* const number = numbers.data() + 2 * (i - first);
-      return std::pair(force / size * number[0], force / size * number[1]);
+      ForceNumbers changed{};
+      if (i < first || numbers_of_force * (i - first) >= numbers.size()) return changed;
+      const double* const number = numbers.data() + numbers_of_force * (i - first);
+      for (std::size_t k = 0; k < changed.size(); ++k) changed[k] = force / size * number[k];
+      return changed;
     };
     place_numbers(problem, closed, change, memory.force);
     memory.none.assign(memory.force.size(), 0.0);
@@ -181,7 +188,10 @@ double motion_left_open(const IslandProblem& problem, std::span<const ActiveCont
 
 double motion_apart(const IslandProblem& problem, std::span<const ActiveContact> closed, const ActiveSet& set,
                     MotionComparison& memory) {
-  const auto forces = [&](std::size_t i) { return std::pair(closed[i].normal, closed[i].tangential); };
+  const auto forces = [&](std::size_t i) {
+    const TangentDirection::Numbers& tangential = closed[i].tangential;
+    return ForceNumbers{closed[i].normal, tangential[0], tangential[1]};
+  };
   place_numbers(problem, closed, forces, memory.force);
   const double apart = largest_difference(problem, problem.impulses(), memory.force, memory);
   return std::max(apart, motion_left_open(problem, closed, set, memory));

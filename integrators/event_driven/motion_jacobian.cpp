@@ -23,18 +23,21 @@ using OfContact = std::array<double, most_columns>;
 /// against rolling.
 OfContact direction(std::span<const ActiveContact> contacts, const ContactPivot::Row& force) {
   const ActiveContact& contact = contacts[force.contact];
-  const bool tangent = force.tangent;
   OfContact result{};
-  const double ratio = tangent ? 0.0 : -contact.slip_sign() * contact.friction;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.at.columns()); ++i) {
-    result[i] = contact.at.row(tangent ? contact.at.tangent_row() : 0)[i];
-    if (ratio != 0.0) result[i] += ratio * contact.at.row(1)[i];
-  }
-  if (tangent || force.contact + 1 == contacts.size() || !contacts[force.contact + 1].at.attached)
-    return result;
+  const auto add_row = [&](double factor, const double* row) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.at.columns()); ++i) {
+      result[i] += factor * row[i];
+    }
+  };
+  add_row(1.0, contact.at.row(force.tangent ? contact.at.tangent_row() : 0));
+  if (force.tangent) return result;
+  for_tangents(contact.at, [&](std::size_t k, int row) {
+    if (const double ratio = contact.friction_ratio(k); ratio != 0.0) add_row(ratio, contact.at.row(row));
+  });
+  if (force.contact + 1 == contacts.size() || !contacts[force.contact + 1].at.attached) return result;
   const ActiveContact& rolling = contacts[force.contact + 1];
-  for (std::size_t i = 0; i < most_columns; ++i)
-    result[i] -= rolling.slip_sign() * rolling.friction * rolling.at.row(0)[i];
+  for_tangents(rolling.at,
+               [&](std::size_t k, int row) { add_row(rolling.friction_ratio(k), rolling.at.row(row)); });
   return result;
 }
 
@@ -189,10 +192,14 @@ MotionJacobian::ContactChange MotionJacobian::change_of(MotionSample& sample, co
     } else {
       model_->detector->contact(contact.pair, sample.view(), sample.evaluation, sample.places, moved);
     }
-    const double slip = -contact.slip_sign() * contact.friction_at(moved, sample.state.v.data());
-    const double tangential = contact.sticks() ? contact.tangential : slip * contact.normal;
+    const TangentDirection slip = contact.slip_direction();
+    const double friction = contact.friction_at(moved, sample.state.v.data());
     for (std::size_t i = 0; i < change.count; ++i) {
-      load[i] = tangential * moved.row(moved.tangent_row())[i];
+      load[i] = 0.0;
+      for_tangents(moved, [&](std::size_t k, int row) {
+        const double force = contact.sticks() ? contact.tangential[k] : -slip[k] * friction * contact.normal;
+        load[i] += force * moved.row(row)[i];
+      });
       if (moved.normals > 0) load[i] += contact.normal * moved.row(0)[i];
     }
     rows = {moved.normal_acceleration(sample.acceleration.data()),
@@ -260,8 +267,10 @@ void MotionJacobian::differentiate_friction_bound(const MotionSample& sample, co
         difference_quotient([&](double value) { return bound_at(forces[row], value); }, force, largest);
     forces[row] = force;
     for (std::size_t i = 0; i < count; ++i) {
-      const double load =
-          -contact.slip_sign() * contact.friction * slope * contact.at.row(contact.at.tangent_row())[i];
+      double load = 0.0;
+      for_tangents(contact.at, [&](std::size_t k, int tangent) {
+        load += contact.friction_ratio(k) * slope * contact.at.row(tangent)[i];
+      });
       const auto moved = unknown(columns[i]);
       out.push_back({.row = moved, .column = row_multipliers_[row], .of_state = load});
     }

@@ -6,10 +6,10 @@
 
 namespace carom {
 
-ContactMode mode_of_rolling(const IslandProblem& problem, std::size_t c, ContactMode contact, double sign,
-                            std::span<const double> force) {
+ContactMode mode_of_rolling(const IslandProblem& problem, std::size_t c, ContactMode contact,
+                            const TangentDirection& slip, std::span<const double> force) {
   if (contact == ContactMode::open) return ContactMode::open;
-  if (sign != 0.0) return mode_by_sign(sign);
+  if (!slip.is_zero()) return slip.mode(1);
   const ContactProblem& stated = problem.problem();
   const int row = problem.first_row(c);
   const double normal = force[static_cast<std::size_t>(problem.first_row(c - 1))];
@@ -31,7 +31,7 @@ void follow_contacts(const SlipDirections& slips, std::span<Candidate> candidate
     if (candidates[i - 1].mode == ContactMode::open) {
       rolling.mode = ContactMode::open;
     } else if (rolling.mode == ContactMode::open) {
-      rolling.mode = mode_by_sign(slips[i].sign);
+      rolling.mode = slips[i].direction.mode(rolling.at.tangents());
     }
   }
 }
@@ -44,13 +44,16 @@ void name_cause(const IslandProblem& problem, std::span<const std::size_t> takin
     const std::size_t i = taking_part[c];
     if (contacts[c].normals == 0) continue;
     const int row = problem.first_row(c);
-    const double ratio = -slips[i].sign * contacts[c].friction;
     candidates[i].stiffness = stated.w(row, row);
-    if (contacts[c].tangents() > 0) candidates[i].stiffness += ratio * stated.w(row, row + 1);
-    if (c + 1 < contacts.size() && contacts[c + 1].attached) {
-      const double lever = -slips[taking_part[c + 1]].sign * contacts[c + 1].friction;
-      candidates[i].stiffness += lever * stated.w(row, problem.first_row(c + 1));
-    }
+    const auto add_friction = [&](std::size_t constraint) {
+      const TangentDirection& slip = slips[taking_part[constraint]].direction;
+      for_tangents(contacts[constraint], [&](std::size_t k, int tangent) {
+        const double ratio = -slip[k] * contacts[constraint].friction;
+        candidates[i].stiffness += ratio * stated.w(row, problem.first_row(constraint) + tangent);
+      });
+    };
+    add_friction(c);
+    if (c + 1 < contacts.size() && contacts[c + 1].attached) add_friction(c + 1);
     candidates[i].free_acceleration = stated.vector()[static_cast<std::size_t>(row)];
   }
 }

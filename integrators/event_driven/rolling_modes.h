@@ -6,6 +6,7 @@
 
 #include <carom/contact/island_problem.h>
 #include <carom/contact/solvers/contact_mode.h>
+#include <carom/contact/tangent_direction.h>
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/slip_directions.h>
 
@@ -15,10 +16,10 @@
 namespace carom {
 
 /// Mode of a rolling resistance by an answer: held unless its moment is at its bound and the relative spin
-/// changes. \param c its constraint in the problem \param contact mode of its contact \param sign of the spin
-/// that it is taken to have, 0: may be held \param force by row
+/// changes. \param c its constraint in the problem \param contact mode of its contact \param slip direction
+/// along the spin that it is taken to have, zero: may be held \param force by row
 [[nodiscard]] CAROM_API ContactMode mode_of_rolling(const IslandProblem& problem, std::size_t c,
-                                                    ContactMode contact, double sign,
+                                                    ContactMode contact, const TangentDirection& slip,
                                                     std::span<const double> force);
 /// Opens the rolling resistance of candidates that open; closes that of those that stay: it is held, unless
 /// it rolls already.

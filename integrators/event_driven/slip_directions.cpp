@@ -18,11 +18,11 @@ void SlipDirections::start(std::span<const Candidate> candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     if (candidate.frictionless) {
-      slips_[i].sign = 1.0;
+      slips_[i].direction = TangentDirection::of_sign(1.0);
     } else if (candidate.slip != 0.0) {
-      slips_[i].sign = std::copysign(1.0, candidate.slip);
+      slips_[i].direction = TangentDirection::of_sign(candidate.slip);
     } else if (candidate.starts_slipping) {
-      slips_[i].sign = -std::copysign(1.0, candidate.exhausted_friction);
+      slips_[i].direction = TangentDirection::of_sign(-std::copysign(1.0, candidate.exhausted_friction));
     }
     slips_[i].open = candidate.releases;
   }
@@ -32,9 +32,9 @@ bool SlipDirections::forget_ends(std::span<const Candidate> candidates) {
   bool changed = false;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     SlipDirection& slip = slips_[i];
-    const bool begins = slip.sign != 0.0 && candidates[i].slip == 0.0 && !candidates[i].frictionless;
+    const bool begins = !slip.direction.is_zero() && candidates[i].slip == 0.0 && !candidates[i].frictionless;
     if (!begins && !slip.open) continue;
-    slip = {.sign = begins ? 0.0 : slip.sign, .reverted = true};
+    slip = {.direction = begins ? TangentDirection{} : slip.direction, .reverted = true};
     changed = true;
   }
   return changed;
@@ -55,19 +55,18 @@ bool SlipDirections::revise(std::span<const Candidate> candidates, const Contact
     const Candidate& candidate = candidates[i];
     SlipDirection& slip = slips_[i];
     const double opening = candidate.at.normal_acceleration(acceleration);
-    const double along = candidate.at.tangential_acceleration(acceleration);
+    const double along = acceleration_along(candidate.at, slip.direction, acceleration);
     if (slip.open) {
       if (candidate.stays_open) continue;
       if (opening >= -no_acceleration * std::max(size, std::abs(opening))) continue;
       slip.open = false;
       changed = true;
-    } else if (slip.sign == 0.0 && (candidate.mode == ContactMode::slip_positive ||
-                                    candidate.mode == ContactMode::slip_negative)) {
-      slip.sign = candidate.mode == ContactMode::slip_positive ? 1.0 : -1.0;
+    } else if (const TangentDirection decided = TangentDirection::of_mode(candidate.mode);
+               slip.direction.is_zero() && !decided.is_zero()) {
+      slip.direction = decided;
       changed = changed || candidate.at.law.has_static_friction();  // else the friction is right already
     } else if (candidate.slip == 0.0 && !candidate.frictionless && !slip.reverted &&
-               candidate.mode != ContactMode::open &&
-               slip.sign * along < -std::max(no_acceleration * size, exhausted)) {
+               candidate.mode != ContactMode::open && along < -std::max(no_acceleration * size, exhausted)) {
       // One at a time: it may be what takes the others along.
       if (astray != nullptr && std::abs(along) <= farthest) continue;
       astray = &slip;
@@ -75,7 +74,7 @@ bool SlipDirections::revise(std::span<const Candidate> candidates, const Contact
     }
   }
   if (changed || astray == nullptr) return changed;
-  astray->sign = 0.0;
+  astray->direction = {};
   astray->reverted = true;
   return true;
 }

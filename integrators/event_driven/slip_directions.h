@@ -7,6 +7,7 @@
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/solvers/contact_mode.h>
 #include <carom/contact/solvers/contact_problem.h>
+#include <carom/contact/tangent_direction.h>
 #include <carom/core/constraint.h>
 #include <carom/core/export.h>
 
@@ -47,9 +48,9 @@ struct Candidate {
 
 /// Mode that a candidate is taken to have.
 struct SlipDirection {
-  double sign = 0.0;      ///< of the sliding velocity, 0: may stick
-  bool open = false;      ///< taken as open
-  bool reverted = false;  ///< was taken to start slipping or slip and did not
+  TangentDirection direction{};  ///< of the sliding velocity; zero: may stick
+  bool open = false;             ///< taken as open
+  bool reverted = false;         ///< was taken to start slipping or slip and did not
 };
 
 /// Modes that the candidates of an island are taken to have. Keeps memory only.

@@ -128,9 +128,10 @@ void SmoothMotion::write_works(const MotionSample& at, double lost_inside, doubl
   if (traits.books_external) external += work_of(at.external);
   for (const ActiveContact& contact : active_.list()) {
     double& lost = contact.at.attached ? rolling : contact.at.normals > 0 ? sliding : in_joints;
-    lost -= contact.tangential * (contact.sticks() ? 0.0 : contact.at.tangential_velocity(state.v));
-    external +=
-        contact.tangential * contact.at.surface_velocity[static_cast<std::size_t>(contact.at.tangent_row())];
+    for_tangents(contact.at, [&](std::size_t k, int row) {
+      lost -= contact.tangential[k] * (contact.sticks() ? 0.0 : contact.at.velocity(row, state.v));
+      external += contact.tangential[k] * contact.at.surface_velocity[static_cast<std::size_t>(row)];
+    });
     if (contact.at.normals > 0) external += contact.normal * contact.at.surface_velocity[0];
   }
   if (joints_.rows().depends_on_time()) {

@@ -119,9 +119,9 @@ void read_guard_sample(SmoothMotion& motion, const MotionSample& at, std::vector
   const std::vector<ActiveContact>& closed = motion.active().list();
   out.slips.resize(closed.size());
   for (std::size_t i = 0; i < closed.size(); ++i) {
-    const double sign = closed[i].slip_sign();
-    out.slips[i] = {sign * closed[i].at.tangential_velocity(at.state.v.data()),
-                    sign * closed[i].at.tangential_acceleration(at.acceleration.data()), 0.0};
+    const TangentDirection slip = closed[i].slip_direction();
+    out.slips[i] = {velocity_along(closed[i].at, slip, at.state.v.data()),
+                    acceleration_along(closed[i].at, slip, at.acceleration.data()), 0.0};
   }
   read_features(motion, at, out);
   motion.active().margins(margins);
@@ -156,7 +156,7 @@ bool sample_step_end(SmoothMotion& motion, double time, const double* y, std::sp
     double size = 0.0;
     for (std::size_t i = margin.first; i < margin.last; ++i) {
       const ActiveContact& closed = motion.active().list()[i];
-      size += std::abs(closed.normal) + std::abs(closed.tangential);
+      size += std::abs(closed.normal) + closed.tangential_force();
     }
     out.noises.push_back(scales.force_rounding * std::max(size, scales.force) + no_force);
   }

@@ -6,6 +6,7 @@
 
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/core/constraint.h>
+#include <carom/core/contact_frame.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
 #include <carom/integrators/run/impact_note.h>
@@ -76,8 +77,10 @@ struct EventMotion {
 };
 
 /// One event, of one contact; or, where there is no contact (`body` is not valid), of one force element,
-/// driver or shape on ground. Simulation::name() names the part. Directions: normal first, then tangential.
-struct EventRecord : EventParts, EventSolution, ImpactNote {
+/// driver or shape on ground. Simulation::name() names the part. Numbers by direction are along the normal
+/// first, then along the tangents; ContactFrame::vector_of() makes them a vector in the fixed frame. The
+/// frame is known of impacts and mode changes, and zero of other events.
+struct EventRecord : EventParts, EventSolution, ImpactNote, ContactFrame {
   double time = 0.0;  ///< [s]
   /// Number of the instant: records of one group of bodies at one time, with what follows there from one
   /// event, have the same. Ascends along the list by 0 or 1, from 0 where none were cleared.
@@ -86,11 +89,9 @@ struct EventRecord : EventParts, EventSolution, ImpactNote {
   std::array<double, 3> velocity_before{};  ///< gamma^- [m/s]
   std::array<double, 3> velocity_after{};   ///< gamma^+ [m/s]
   std::array<double, 3> impulse{};          ///< P [N s]; 0 but for impacts and changes of the mode
-  std::array<double, 3> point{};   ///< of impacts and mode changes: where it touches [m]; 0 of a limit
-  std::array<double, 3> normal{};  ///< of impacts and mode changes: unit vector towards `body`; 0 of a limit
-  double gap = 0.0;                ///< of impacts and mode changes: gap then [m]
-  double energy_before = 0.0;      ///< kinetic energy of all bodies that answer, before [J]
-  double energy_after = 0.0;       ///< kinetic energy of all bodies that answer, after [J]
+  double gap = 0.0;                         ///< of impacts and mode changes: gap then [m]
+  double energy_before = 0.0;               ///< kinetic energy of all bodies that answer, before [J]
+  double energy_after = 0.0;                ///< kinetic energy of all bodies that answer, after [J]
   /// Motions of the bodies that the contact is of, first that which `body` names; none of events without a
   /// contact.
   std::array<EventMotion, 3> motions{};

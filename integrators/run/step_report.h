@@ -6,6 +6,7 @@
 #include <carom/contact/solvers/contact_solver.h>
 #include <carom/contact/solvers/solver_chain.h>
 #include <carom/core/constraint.h>
+#include <carom/core/contact_frame.h>
 #include <carom/core/ids.h>
 #include <carom/core/joint_kind.h>
 #include <carom/core/model_finding.h>
@@ -21,17 +22,16 @@
 
 namespace carom {
 
-/// Place of a contact: what touches, where, and when it was detected. Directions: normal first, then
-/// tangential (one in the plane: the normal turned clockwise).
-struct ContactPlace {
-  ConstraintKey key;               ///< identity
-  BodyId body;                     ///< the body; of two bodies that of `a` of the key
-  ObstacleId obstacle;             ///< the shape on ground that `body` touches; not valid: none
-  BodyId other;                    ///< the body that `body` touches; not valid: none
-  int directions = 2;              ///< 2 in the plane, 3 in space; 1 of a limit
-  std::array<double, 3> point{};   ///< where it touches, when it was detected [m]; 0 of a limit
-  std::array<double, 3> normal{};  ///< unit vector towards `body`, at detection; 0 of a limit
-  double gap = 0.0;                ///< when it was detected; > 0 of a lasting contact opened by turning [m]
+/// Place of a contact: what touches, where, and when it was detected. Numbers of a contact by direction are
+/// along the normal first, then along the tangents of its frame; ContactFrame::vector_of() makes them a
+/// vector in the fixed frame.
+struct ContactPlace : ContactFrame {
+  ConstraintKey key;    ///< identity
+  BodyId body;          ///< the body; of two bodies that of `a` of the key
+  ObstacleId obstacle;  ///< the shape on ground that `body` touches; not valid: none
+  BodyId other;         ///< the body that `body` touches; not valid: none
+  int directions = 2;   ///< 2 in the plane, 3 in space; 1 of a limit
+  double gap = 0.0;     ///< when it was detected; > 0 of a lasting contact opened by turning [m]
 };
 
 /// One contact that took part in a step. The impulse acts on `body`, its opposite on what that touches.

@@ -8,6 +8,8 @@
 
 #include <nanobind/stl/vector.h>
 
+#include <array>
+#include <string>
 #include <vector>
 
 namespace carom_python {
@@ -48,41 +50,79 @@ void bind_keys(nb::module_& core) {
   });
 }
 
+/// Numbers of a contact as vectors in the fixed frame.
+template <class P>
+void bind_vector_of(nb::class_<P>& type) {
+  type.def(
+      "vector_of",
+      [](const P& self, nb::handle by_direction) {
+        std::array<double, 3> numbers{};
+        load_numbers(by_direction, numbers.data(), numbers.size(), "vector_of: argument 'by_direction'",
+                     "three numbers");
+        return Convert<Vec<3>>::cast(self.vector_of(numbers));
+      },
+      nb::arg("by_direction"),
+      nb::sig("def vector_of(self, by_direction: numpy.typing.ArrayLike) -> "
+              "numpy.typing.NDArray[numpy.float64]"),
+      doc("ContactFrame.vector_of"));
+}
+
+/// A member of a contact's record, by direction, as a property that is a vector in the fixed frame.
+template <auto member, class P>
+void bind_vector(nb::class_<P>& type, const std::string& name, const char* unit) {
+  const std::string signature = "def " + name + "_vector(self) -> numpy.typing.NDArray[numpy.float64]";
+  const std::string text = "The `" + name + "` as a vector in the fixed frame, x, y and z " + unit +
+                           "; zero of a limit of a joint.";
+  type.def_prop_ro((name + "_vector").c_str(),
+                   [](const P& self) { return Convert<Vec<3>>::cast(self.vector_of(self.*member)); },
+                   nb::sig(signature.c_str()), text.c_str());
+}
+
+/// Impulse and velocities of a record of an impact or a step.
+template <class P>
+void bind_vectors_of_impulse(nb::class_<P>&& type) {
+  bind_vector_of(type);
+  bind_vector<&P::impulse>(type, "impulse", "[N s]");
+  bind_vector<&P::velocity_before>(type, "velocity_before", "[m/s]");
+  bind_vector<&P::velocity_after>(type, "velocity_after", "[m/s]");
+}
+
 void bind_events(nb::module_& core) {
   bind_record<EventMotion>(core, "EventMotion", {"EventMotion"}, false, [](auto& fields) {
     using P = EventMotion;
     fields("body", &P::body)("position", &P::position)("velocity_before", &P::velocity_before)(
         "velocity_after", &P::velocity_after);
   });
-  const std::vector<std::string> keys{"EventRecord", "EventParts", "EventSolution", "ImpactNote"};
-  bind_record<EventRecord>(core, "EventRecord", keys, false, [](auto& fields) {
+  const std::vector<std::string> keys{"EventRecord", "EventParts", "EventSolution", "ImpactNote",
+                                      "ContactFrame"};
+  bind_vectors_of_impulse(bind_record<EventRecord>(core, "EventRecord", keys, false, [](auto& fields) {
     using P = EventRecord;
     fields("time", &P::time)("kind", &P::kind)("contact", &P::contact)("body", &P::body)(
         "obstacle", &P::obstacle)("element", &P::element)("joint", &P::joint)("other", &P::other)(
         "mode", &P::mode)("outcome", &P::outcome)("residual", &P::residual)("solver", &P::solver)(
         "instant", &P::instant)("velocity_before", &P::velocity_before)("velocity_after", &P::velocity_after)(
-        "impulse", &P::impulse)("point", &P::point)("normal", &P::normal)("gap", &P::gap)(
-        "energy_before", &P::energy_before)("energy_after", &P::energy_after)("motions", &P::motions)(
-        "stiffness", &P::stiffness)("free_acceleration", &P::free_acceleration)(
+        "impulse", &P::impulse)("point", &P::point)("normal", &P::normal)("tangents", &P::tangents)(
+        "gap", &P::gap)("energy_before", &P::energy_before)("energy_after", &P::energy_after)(
+        "motions", &P::motions)("stiffness", &P::stiffness)("free_acceleration", &P::free_acceleration)(
         "accumulation_time", &P::accumulation_time)("energy_gain", &P::energy_gain)(
         "contact_work", &P::contact_work)("restitution_factor", &P::restitution_factor)(
         "cut_sequence", &P::cut_sequence)("rolling_moment", &P::rolling_moment);
-  });
+  }));
 }
 
 void bind_steps(nb::module_& core) {
-  const std::vector<std::string> keys{"ContactRecord", "ContactPlace", "ImpactNote"};
-  bind_record<ContactRecord>(core, "ContactRecord", keys, false, [](auto& fields) {
+  const std::vector<std::string> keys{"ContactRecord", "ContactPlace", "ImpactNote", "ContactFrame"};
+  bind_vectors_of_impulse(bind_record<ContactRecord>(core, "ContactRecord", keys, false, [](auto& fields) {
     using P = ContactRecord;
     fields("key", &P::key)("body", &P::body)("obstacle", &P::obstacle)("other", &P::other)(
-        "directions", &P::directions)("point", &P::point)("normal", &P::normal)("gap", &P::gap)(
-        "time", &P::time)("velocity_before", &P::velocity_before)("velocity_after", &P::velocity_after)(
-        "impulse", &P::impulse)("work", &P::work)("mode", &P::mode)("impact", &P::impact)("worst", &P::worst)(
-        "outcome", &P::outcome)("residual", &P::residual)("solver", &P::solver)(
-        "energy_gain", &P::energy_gain)("contact_work", &P::contact_work)(
+        "directions", &P::directions)("point", &P::point)("normal", &P::normal)("tangents", &P::tangents)(
+        "gap", &P::gap)("time", &P::time)("velocity_before", &P::velocity_before)(
+        "velocity_after", &P::velocity_after)("impulse", &P::impulse)("work", &P::work)("mode", &P::mode)(
+        "impact", &P::impact)("worst", &P::worst)("outcome", &P::outcome)("residual", &P::residual)(
+        "solver", &P::solver)("energy_gain", &P::energy_gain)("contact_work", &P::contact_work)(
         "restitution_factor", &P::restitution_factor)("cut_sequence", &P::cut_sequence)("rolling_moment",
                                                                                         &P::rolling_moment);
-  });
+  }));
   bind_record<JointImpulse>(core, "JointImpulse", {"JointImpulse"}, false, [](auto& fields) {
     fields("joint", &JointImpulse::joint)("impulse", &JointImpulse::impulse)("time", &JointImpulse::time);
   });
@@ -139,14 +179,17 @@ void bind_statistics(nb::module_& core) {
         "impact_impulse", &P::impact_impulse)("mean_force", &P::mean_force)("mean_moment", &P::mean_moment)(
         "contacts", &P::contacts);
   });
-  bind_record<LastingContact>(
-      core, "LastingContact", {"LastingContact", "ContactPlace"}, false, [](auto& fields) {
+  auto lasting = bind_record<LastingContact>(
+      core, "LastingContact", {"LastingContact", "ContactPlace", "ContactFrame"}, false, [](auto& fields) {
         using P = LastingContact;
         fields("key", &P::key)("body", &P::body)("obstacle", &P::obstacle)("other", &P::other)(
-            "directions", &P::directions)("point", &P::point)("normal", &P::normal)("gap", &P::gap)(
-            "velocity", &P::velocity)("force", &P::force)("rolling_moment", &P::rolling_moment)("mode",
-                                                                                                &P::mode);
+            "directions", &P::directions)("point", &P::point)("normal", &P::normal)("tangents", &P::tangents)(
+            "gap", &P::gap)("velocity", &P::velocity)("force", &P::force)(
+            "rolling_moment", &P::rolling_moment)("mode", &P::mode);
       });
+  bind_vector_of(lasting);
+  bind_vector<&LastingContact::velocity>(lasting, "velocity", "[m/s]");
+  bind_vector<&LastingContact::force>(lasting, "force", "[N]");
   core.def(
       "force_on", [](const StepReport& report, BodyId body) { return force_on(report, body); },
       nb::arg("report"), nb::arg("body"), doc("force_on"));

@@ -107,13 +107,13 @@ TEST(ActiveSet, ABrickThatSticksAtTwoCorners) {
     const double shift = force * half_height / (2.0 * half_width);
     EXPECT_NEAR(left.normal, 0.5 * weight - shift, 1e-12);
     EXPECT_NEAR(right.normal, 0.5 * weight + shift, 1e-12);
-    EXPECT_NEAR(left.tangential + right.tangential, -force, 1e-12);
+    EXPECT_NEAR(left.tangential[0] + right.tangential[0], -force, 1e-12);
     // The largest of min(mu N_1 - |T_1|, mu N_2 - |F - T_1|): two tents.
     const double best = std::min(
         {left.normal, friction * left.normal, friction * right.normal, 0.5 * (friction * weight - force)});
     EXPECT_NEAR(margin, best, 1e-12) << pull;
-    EXPECT_NEAR(std::min(friction * left.normal - std::abs(left.tangential),
-                         friction * right.normal - std::abs(right.tangential)),
+    EXPECT_NEAR(std::min(friction * left.normal - std::abs(left.tangential[0]),
+                         friction * right.normal - std::abs(right.tangential[0])),
                 best, 1e-12);
   }
 }
@@ -133,7 +133,7 @@ TEST(ActiveSet, ABrickThatSlips) {
     const double shift = side * friction * weight * half_height / (2.0 * half_width);
     EXPECT_NEAR(closed[0].normal, 0.5 * weight - shift, 1e-12);
     EXPECT_NEAR(closed[1].normal, 0.5 * weight + shift, 1e-12);
-    EXPECT_NEAR(closed[0].tangential, -side * friction * closed[0].normal, 1e-13);
+    EXPECT_NEAR(closed[0].tangential[0], -side * friction * closed[0].normal, 1e-13);
     EXPECT_NEAR(closed.margin(), std::min(closed[0].normal, closed[1].normal), 1e-12);
   }
 }
@@ -145,7 +145,7 @@ TEST(ActiveSet, ABrickThatSticksOnASlope) {
   for (const double number : a) EXPECT_NEAR(number, 0.0, 1e-13);
   closed.margin();
   EXPECT_NEAR(closed[0].normal + closed[1].normal, mass * g * std::cos(slope), 1e-12);
-  EXPECT_NEAR(closed[0].tangential + closed[1].tangential, mass * g * std::sin(slope), 1e-12);
+  EXPECT_NEAR(closed[0].tangential[0] + closed[1].tangential[0], mass * g * std::sin(slope), 1e-12);
 }
 
 TEST(ActiveSet, ASlipperyBrickOnASlope) {
@@ -154,7 +154,7 @@ TEST(ActiveSet, ASlipperyBrickOnASlope) {
   closed.update();
   const std::vector<double> a = closed.react({0.0, -g, 0.0});
   EXPECT_NEAR(a[0], -g * std::sin(0.5) * std::cos(0.5), 1e-13);
-  EXPECT_EQ(closed[0].tangential, 0.0);
+  EXPECT_EQ(closed[0].tangential[0], 0.0);
 }
 
 TEST(ActiveSet, ADiscThatRolls) {
@@ -170,7 +170,7 @@ TEST(ActiveSet, ADiscThatRolls) {
   const double expected = 2.0 / 3.0 * g * std::sin(slope);
   EXPECT_NEAR(a[0], -expected * std::cos(slope), 1e-13);
   EXPECT_NEAR(a[2], expected / radius, 1e-12);
-  EXPECT_NEAR(closed[0].tangential, mass * g * std::sin(slope) / 3.0, 1e-12);
+  EXPECT_NEAR(closed[0].tangential[0], mass * g * std::sin(slope) / 3.0, 1e-12);
   EXPECT_NEAR(closed.margin(), 0.5 * mass * g * std::cos(slope) - mass * g * std::sin(slope) / 3.0, 1e-12);
 }
 
@@ -187,7 +187,7 @@ double largest_margin(const Closed& closed) {
       balance(c, 2 * i + 1) = contact.at.row(1)[c];
     }
     force[2 * i] = contact.normal;
-    force[2 * i + 1] = contact.tangential;
+    force[2 * i + 1] = contact.tangential[0];
   }
   Eigen::FullPivLU<Eigen::MatrixXd> lu(balance);
   lu.setThreshold(1e-10);
@@ -265,8 +265,8 @@ void find_margins_in_a_corner(std::uint64_t seed, int count) {
     // The distributed forces still do the same.
     double up = 0.0, along = 0.0;
     for (const ActiveContact& contact : closed.contacts.list()) {
-      along += contact.normal * contact.at.row(0)[0] + contact.tangential * contact.at.row(1)[0];
-      up += contact.normal * contact.at.row(0)[1] + contact.tangential * contact.at.row(1)[1];
+      along += contact.normal * contact.at.row(0)[0] + contact.tangential[0] * contact.at.row(1)[0];
+      up += contact.normal * contact.at.row(0)[1] + contact.tangential[0] * contact.at.row(1)[1];
     }
     EXPECT_NEAR(up, mass * g, 1e-11);
     EXPECT_TRUE(std::isfinite(along));
@@ -290,7 +290,7 @@ TEST(ActiveSet, WedgedContactsKeepFiniteForces) {
   EXPECT_GT(closed.margin(), 0.0);
   for (const ActiveContact& contact : closed.contacts.list()) {
     EXPECT_LT(contact.normal, 1e4 * mass * g);
-    EXPECT_LE(std::abs(contact.tangential), contact.normal);
+    EXPECT_LE(std::abs(contact.tangential[0]), contact.normal);
   }
 }
 

@@ -251,17 +251,21 @@ TEST_F(DelassusOfComponents, OfTheirLinearisedSteps) {
   expect_product(response, inverse, 1e-13);
 }
 
-/// Friction at the edge of its cone: columns differ from rows.
+/// Friction at the edge of its cone, in the plane and in space: columns differ from rows.
 TEST_P(DelassusTest, ColumnsOfSlippingContacts) {
   Random random(3);
   ConstraintSet list = constraints(random, 6);
   std::vector<ImpulseDirection> directions;
   for (Constraint& one : list) {
     const std::vector<double> normal(one.row(0), one.row(1));
-    one.start_rows(2);
+    one.start_rows(2 + static_cast<int>(directions.size() % 2));
     std::copy(normal.begin(), normal.end(), one.row(0));
-    for (int c = 0; c < one.columns(); ++c) one.row(1)[c] = random.uniform(-1.0, 1.0);
-    directions.push_back({&one, 0, random.uniform(-0.9, 0.9)});
+    TangentDirection::Numbers ratios{};
+    for_tangents(one, [&](std::size_t k, int row) {
+      for (int c = 0; c < one.columns(); ++c) one.row(row)[c] = random.uniform(-1.0, 1.0);
+      ratios[k] = random.uniform(-0.9, 0.9);
+    });
+    directions.push_back({&one, 0, ratios});
   }
   MassResponse response(assembly_);
   Delassus delassus;
@@ -271,8 +275,10 @@ TEST_P(DelassusTest, ColumnsOfSlippingContacts) {
   delassus.write(w.data());
   MatrixXd columns = rows(directions).transpose();
   for (std::size_t j = 0; j < directions.size(); ++j) {
-    directions[j].constraint->add_transposed(1, directions[j].ratio,
-                                             columns.col(static_cast<Eigen::Index>(j)).data());
+    const Constraint& at = *directions[j].constraint;
+    double* const column = columns.col(static_cast<Eigen::Index>(j)).data();
+    for_tangents(at,
+                 [&](std::size_t k, int row) { at.add_transposed(row, directions[j].ratios[k], column); });
   }
   const MatrixXd expected = rows(directions) * inverse_masses() * columns;
   EXPECT_LE((w - expected).cwiseAbs().maxCoeff(), rounding * expected.cwiseAbs().maxCoeff());

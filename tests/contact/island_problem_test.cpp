@@ -155,15 +155,15 @@ TEST_F(IslandProblemTest, RowsHaveTheSetsThatTheirConstraintsSay) {
   EXPECT_EQ(set_of_row(3, 0).kind, SetKind::interval);
   EXPECT_EQ(set_of_row(3, 0).lower, -2.0);
   EXPECT_EQ(set_of_row(3, 0).upper, 2.0);
-  made.slide(0, 1.0);
+  made.slide(0, TangentDirection::of_sign(1.0));
   EXPECT_EQ(set_of_row(0, 0).kind, SetKind::half_line) << "a limit has no tangent to slide along";
   all[3].of_joint.friction_bound = 6.0;
   for (std::size_t c = 0; c < all.size(); ++c) made.update_bound(c);
   EXPECT_EQ(set_of_row(3, 0).upper, 3.0);
   EXPECT_EQ(set_of_row(2, 0).bound, made.first_row(1)) << "no given bound";
-  made.slide(3, -1.0);
-  EXPECT_EQ(set_of_row(3, 0).lower, -6.0);
-  EXPECT_EQ(set_of_row(3, 0).upper, -6.0);
+  made.slide(3, TangentDirection::of_sign(1.0));
+  EXPECT_EQ(set_of_row(3, 0).lower, -3.0);
+  EXPECT_EQ(set_of_row(3, 0).upper, -3.0);
 }
 
 }  // namespace

@@ -149,7 +149,8 @@ TEST(ConstraintSet, ALimitHasNothingAlongATangent) {
     EXPECT_EQ(limit.speed(limit.tangent_row(), v.data()), 0.0);
     for (int c = 0; c < limit.columns(); ++c) EXPECT_EQ(limit.row(1)[c], 0.0);
     std::fill(load.begin(), load.end(), 0.0);
-    limit.add_force(2.0, 3.0, load.data());
+    limit.add_transposed(0, 2.0, load.data());
+    limit.add_transposed(limit.tangent_row(), 3.0, load.data());
     std::vector<double> expected(velocities, 0.0);
     limit.add_transposed(0, 2.0, expected.data());
     EXPECT_EQ(load, expected);
