@@ -15,7 +15,7 @@ namespace {
 constexpr double rank_tolerance = 1e-12;
 
 // Residual at which a step that does not halve it moves noise: the answer is as good as that of improve().
-constexpr double rounding = 1e-14;
+constexpr double rounding_of_steps = 1e-14;
 
 // Steps in a row that do not halve the residual, after which modes change without an end.
 constexpr int most_idle_steps = 6;
@@ -209,7 +209,7 @@ bool NewtonPolish::refine(const ContactProblem& problem, ModeEquations& equation
     found = residual(problem, trial_, xi_);
     if (found.value <= round_off) break;
     if (!(found.value < 0.5 * last)) {
-      if (last > rounding) return false;
+      if (last > rounding_of_steps) return false;
       break;
     }
     last = found.value;
