@@ -115,10 +115,13 @@ bool PartedSteps::is_followed(const StepClosing& closing) const {
 /// by Newton's method, kept between an end at which all is open and one at which it is not. What would leave
 /// a thing on its far side by the end of a part is in it at an earlier end.
 void PartedSteps::make_part_up_to(const Whole& whole, double length) {
+  // What is found may lie just before each end that is tried: then the bracket is halved.
+  constexpr int most_idle = 5, most_tries = 1000;
   const double begin = done_.state.time;
   closings_->begin_part();
   const bool searches = counts_ && searches_ && may_search();
-  double open = begin, closed = never;
+  double open = begin, closed = never, width = never;
+  int idle = 0, tries = 0;
   StepClosing found;  // the one that is headed for
   bool ends_there = false;
   for (double end = whole.end;;) {
@@ -142,7 +145,14 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
     ends_there = !is_late && end < whole.end && (found.gap <= found.shallow || is_followed(found));
     if (open == end && (end == whole.end || ends_there)) break;
     double next = is_late ? first.time : end - (found.gap - found.aim()) / found.rate;
-    if (!(next > open && next < closed)) next = 0.5 * (open + closed);
+    const bool shrinks = closed - open <= 0.5 * width;
+    idle = shrinks ? 0 : idle + 1;
+    if (shrinks) width = closed - open;
+    if (idle > most_idle || !(next > open && next < closed)) {
+      next = 0.5 * (open + closed);
+      idle = 0;
+    }
+    if (++tries > most_tries) fail(found.key, whole);
     const bool is_between = next > open && next < closed;
     if (!is_between && end == closed) break;  // as near as times can be told apart
     end = is_between ? next : closed;
@@ -201,8 +211,11 @@ void PartedSteps::step(State& state, Companion& companion, double step, double e
   try {
     make_parts(state, companion, whole, true);
   } catch (const SolverError&) {
-    if (!is_parted_ || parts_ > most_parts) throw;
+    const ImpactRules& rules = stepper_->options().impact_rules;
+    const bool refuses = rules.refuse_jams || rules.energy_gain == EnergyGain::refuse;
+    if (!is_parted_ || parts_ > most_parts || refuses) throw;
     make_parts(state, companion, whole, false);
+    if (sum_.energy_gain > sum_.lasting_gain) throw;  // an answer that is worse than none
   }
   sum_.step = step;
   sum_.steps_made = made_;

@@ -12,7 +12,8 @@
 /// counted (ContactCounts::cut_sequences); only what would pass through anything parts the step then.
 ///
 /// A step whose parts have no solution is made again, whole, without closings: these are counted in the same
-/// way. It fails only where the whole one has none either.
+/// way. It fails where the whole one has none either, or gains energy in impacts; and where jams or gains are
+/// to be refused (ImpactRules), which the whole one would hide.
 
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>

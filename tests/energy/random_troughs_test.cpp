@@ -104,6 +104,19 @@ TEST_P(RandomTroughsLong, NoneEndsEarlyAndNothingIsShotAway) {
   EXPECT_LE(1000 * jammed, range.count());
 }
 
+// A closing was found 3e-10 s before each end of a part that was tried, so that a step of 1 ms took millions.
+TEST(RandomTroughs, StepsTakeABoundedNumberOfTries) {
+  for (const std::uint64_t seed : {40734U, 40003U, 41059U}) {
+    SCOPED_TRACE(seed);
+    Simulation simulation = simulation_of(random_trough(seed), "located");
+    // One search may take more than what is allowed on average.
+    constexpr int most_in_one_step = 2000;
+    while (simulation.time() < end) {
+      ASSERT_LT(simulation.step().steps_made, most_in_one_step) << "t = " << simulation.time();
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Modes, RandomTroughsLong,
                          ::testing::Values("at_step_start", "located", "event_driven"));
 

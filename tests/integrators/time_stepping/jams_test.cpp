@@ -121,6 +121,36 @@ TEST(Jams, WhereDirectionsThatTurnPressTheBody) {
   }
 }
 
+// A step whose parts have no solution is made whole, which has another motion: a jam that is to be refused is
+// told.
+TEST(Jams, AreRefusedInPartsOfSteps) {
+  int jams = 0, refused = 0;
+  for (const std::uint64_t seed : {9U, 52U, 66U, 91U, 132U, 140U, 185U, 231U, 233U, 250U}) {
+    SCOPED_TRACE(seed);
+    TimeStepping options{.step = 1e-3, .impacts = ImpactTimes::located};
+    const System system = trough(seed, 2);
+    Simulation simulation(system, options);
+    try {
+      simulation.run_until(1.0);
+    } catch (const SolverError&) {
+      continue;
+    }
+    if (simulation.statistics().plastic_jams == 0) continue;
+    ++jams;
+    options.impact_rules.refuse_jams = true;
+    Simulation refusing(system, options);
+    try {
+      refusing.run_until(1.0);
+      ADD_FAILURE() << "comes to its end";
+    } catch (const SolverError& error) {
+      ++refused;
+      EXPECT_NE(std::string(error.what()).find("refuse_jams"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_GT(jams, 4);
+  EXPECT_EQ(refused, jams);
+}
+
 TEST(Jams, WhereImpactsAreResolvedAtTheStartOfSteps) {
   expect_jams(run_troughs(2, {.step = 1e-3, .impact_rules = {.energy_gain = EnergyGain::limit}}, {0, 10}));
 }
