@@ -97,8 +97,8 @@ std::size_t RankRevealingQr::longest_column(std::size_t k) const {
 }
 
 void RankRevealingQr::reflect(std::size_t k, double length) {
-  // Squares of lengths are brought down from row to row; where rounding of those before is more than this
-  // part of one, it is measured anew, since the rank hangs on it.
+  // Squares of lengths are brought down from row to row. Where less than this part of one is left, rounding
+  // of what it was counts, and it is measured anew: the rank hangs on it.
   constexpr double least_left = 1e-4;
   double* pivot = r_.data() + k * rows_;
   const double alpha = pivot[k] > 0.0 ? -length : length;

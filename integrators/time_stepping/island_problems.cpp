@@ -4,6 +4,7 @@
 #include <carom/integrators/time_stepping/island_problems.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace carom {
 
@@ -19,7 +20,7 @@ void IslandProblems::begin_passes(bool repeats) {
 void IslandProblems::begin(const StepIsland& island) {
   if (is_kept_) {
     used_ = std::max(used_, first_ + count_);
-    first_ = place_of(island);
+    first_ = island.constraints.empty() ? used_ : place_of(island);
   } else {
     first_ = island.constraints.size() >= factored_constraints ? 0 : 1;
   }
@@ -28,10 +29,12 @@ void IslandProblems::begin(const StepIsland& island) {
 
 std::size_t IslandProblems::place_of(const StepIsland& island) {
   const Constraint* const first = island.constraints.data();
-  const auto is_it = [&](const Place& place) { return place.constraints == first; };
-  const auto known = std::find_if(places_.begin(), places_.end(), is_it);
-  if (known != places_.end()) return known->first;
-  places_.push_back({first, used_});
+  const auto is_before = [](const Place& place, const Constraint* at) {
+    return std::less<>()(place.constraints, at);
+  };
+  const auto known = std::lower_bound(places_.begin(), places_.end(), first, is_before);
+  if (known != places_.end() && known->constraints == first) return known->first;
+  places_.insert(known, {first, used_});
   return used_;
 }
 

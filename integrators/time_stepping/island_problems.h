@@ -56,7 +56,7 @@ private:
   std::size_t first_ = 0, count_ = 0;  // of the island at hand
   bool is_kept_ = false;               // problems are, from island to island
   bool goes_on_ = false;               // and there are answers to start from
-  std::vector<Place> places_;          // of islands, in the order in which the first pass came to them
+  std::vector<Place> places_;          // of islands with constraints, ascending by address
   std::size_t used_ = 0;               // problems of all of them
 };
 

@@ -152,14 +152,14 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
       next = 0.5 * (open + closed);
       idle = 0;
     }
-    if (++tries > most_tries) fail(found.key, whole);
+    if (++tries > most_tries) fail(found.key, whole, most_tries);
     const bool is_between = next > open && next < closed;
     if (!is_between && end == closed) break;  // as near as times can be told apart
     end = is_between ? next : closed;
     length = end - begin;
   }
   const bool early = trial_.state.time < whole.end;
-  if (early && ++parts_ > most_parts) fail(found.key, whole);
+  if (early && ++parts_ > most_parts) fail(found.key, whole, most_parts);
   if (!counts_) return;
   // A closing that is not looked for any more is told.
   if (closings_->any_left_out()) ++trial_.companion.statistics.cut_sequences;
@@ -168,7 +168,7 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
   note_closings(hits ? &found : nullptr);
 }
 
-[[noreturn]] void PartedSteps::fail(const ConstraintKey& key, const Whole& whole) const {
+[[noreturn]] void PartedSteps::fail(const ConstraintKey& key, const Whole& whole, int allowed) const {
   const char* const option = stepper_->options().overlaps.never_tunnel ? "overlaps.never_tunnel" : "impacts";
   SolverFailure failure;
   failure.time = whole.start;
@@ -177,7 +177,7 @@ void PartedSteps::make_part_up_to(const Whole& whole, double length) {
   const std::string message =
       "time stepping at t = " + to_text(whole.start) + " s, step " + to_text(whole.step) + " s: " + option +
       ": the step ends again and again where " + failure.parts.front() + " meet; allowed: at most " +
-      std::to_string(most_parts) + " times (a shorter step, or e < 1)";
+      std::to_string(allowed) + " times (a shorter step, or e < 1)";
   throw RunError(message, std::move(failure));
 }
 

@@ -64,7 +64,7 @@ private:
   [[nodiscard]] const State& after_impacts() const;
   [[nodiscard]] bool is_followed(const StepClosing& closing) const;
   void note_closings(const StepClosing* hit);
-  [[noreturn]] void fail(const ConstraintKey& key, const Whole& whole) const;
+  [[noreturn]] void fail(const ConstraintKey& key, const Whole& whole, int allowed) const;
   void keep_impulses();
 
   TimeStepper* stepper_;
