@@ -28,7 +28,6 @@ template <class Place>
 void write_place(const Constraint& at, const Assembly& assembly, const double* q, Place& out) {
   set_parties(at, assembly, out);
   out.key = at.key;
-  out.directions = at.rows;
   out.gap = at.gap;
   read_contact_frame(at, q + assembly.layout()->bodies()[at.body()].q, out);
 }

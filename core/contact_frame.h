@@ -6,20 +6,20 @@
 #include <carom/core/space.h>
 
 #include <array>
-#include <cstddef>
 
 namespace carom {
 
 /// Where a contact touches, and the directions in the fixed frame that its numbers are along: the normal
-/// first, then the tangents. All are zero of a limit of a joint, which has a coordinate but no direction in
-/// space.
+/// first, then the tangents, which follow from it. A limit of a joint has a coordinate, but no direction in
+/// space: all are zero.
 struct ContactFrame {
   std::array<double, 3> point{};   ///< where it touches, when it was detected [m]; 0 of a limit
   std::array<double, 3> normal{};  ///< unit vector towards `body`, at detection; 0 of a limit
+  int directions = 2;              ///< numbers that it has: 2 in the plane, 3 in space; 1 of a limit
+
   /// Unit vectors of the tangential directions. In the plane the first one alone, the normal turned
   /// clockwise; in space two, at right angles to each other and to the normal. 0 where there is none.
-  std::array<std::array<double, 3>, 2> tangents{};
-
+  [[nodiscard]] std::array<Vec<3>, 2> tangents() const;
   /// Vector in the fixed frame of numbers by direction, as records have them: of an impulse [N s] or a force
   /// [N], which acts on `body`, or of a velocity [m/s], of `body` against what it touches. Zero of a limit of
   /// a joint. The moment of rolling resistance is no part of it: that is along a spin, and a number of its
@@ -27,11 +27,17 @@ struct ContactFrame {
   [[nodiscard]] Vec<3> vector_of(const std::array<double, 3>& by_direction) const;
 };
 
+inline std::array<Vec<3>, 2> ContactFrame::tangents() const {
+  if (directions > 2) return Space<3>::tangent_frame(Vec<3>(normal.data()));
+  std::array<Vec<3>, 2> out{Vec<3>::Zero(), Vec<3>::Zero()};
+  if (directions == 2) out[0].head<2>() = Space<2>::tangent_frame(Vec<2>(normal[0], normal[1]))[0];
+  return out;
+}
+
 inline Vec<3> ContactFrame::vector_of(const std::array<double, 3>& by_direction) const {
-  const auto component = [&](std::size_t i) {
-    return by_direction[0] * normal[i] + by_direction[1] * tangents[0][i] + by_direction[2] * tangents[1][i];
-  };
-  return {component(0), component(1), component(2)};
+  if (directions < 2) return Vec<3>::Zero();
+  const std::array<Vec<3>, 2> along = tangents();
+  return by_direction[0] * Vec<3>(normal.data()) + by_direction[1] * along[0] + by_direction[2] * along[1];
 }
 
 }  // namespace carom

@@ -40,7 +40,7 @@ void ModeMachines::advance(const Run& run, double limit) {
       make_step(state, companion, step, end, run.report);
     } else {
       run.unlisted = driver->advance(state, companion, end, run.report, run.events);
-      list_impacts(run.events, std::exchange(run.unlisted, 0), state.layout()->dimension(), run.report);
+      list_impacts(run.events, std::exchange(run.unlisted, 0), run.report);
     }
   };
   const StepGrid grid(run.mode);

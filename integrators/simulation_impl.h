@@ -55,9 +55,7 @@ struct Simulation::Impl {
     return callbacks.has_observers() || progress || stop.asks() || log.enabled(LogLevel::error);
   }
   /// Lists the contacts of a step that nobody has looked at so far.
-  void list_impacts() {
-    carom::list_impacts(events, std::exchange(unlisted, 0), state.layout()->dimension(), report);
-  }
+  void list_impacts() { carom::list_impacts(events, std::exchange(unlisted, 0), report); }
   enum class Stops { on_grid, where_seen };
   void step(Simulation& simulation, double limit, Stops stops);
   void call_actions(Simulation& simulation, std::vector<std::exception_ptr>& thrown);

@@ -7,14 +7,12 @@ namespace carom {
 
 namespace {
 
-ContactRecord contact_of(const EventRecord& event, int dimension) {
+ContactRecord contact_of(const EventRecord& event) {
   ContactRecord entry;
   entry.key = event.contact;
   entry.body = event.body;
   entry.obstacle = event.obstacle;
   entry.other = event.other;
-  const bool limit = event.contact.a.owner == FeatureKey::Owner::joint;
-  entry.directions = limit ? 1 : dimension;
   static_cast<ImpactNote&>(entry) = event;
   entry.time = event.time;
   static_cast<ContactFrame&>(entry) = event;
@@ -35,11 +33,11 @@ ContactRecord contact_of(const EventRecord& event, int dimension) {
 
 }  // namespace
 
-void list_impacts(const RecordedEvents& events, std::size_t latest, int dimension, StepReport& report) {
+void list_impacts(const RecordedEvents& events, std::size_t latest, StepReport& report) {
   const std::size_t size = events.size();
   for (std::size_t i = size - std::min(latest, size); i < size; ++i) {
     const EventRecord event = events.record(i);
-    if (is_impulsive(event.kind)) report.contacts.push_back(contact_of(event, dimension));
+    if (is_impulsive(event.kind)) report.contacts.push_back(contact_of(event));
   }
 }
 

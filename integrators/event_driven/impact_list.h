@@ -13,8 +13,7 @@
 namespace carom {
 
 /// Lists the impacts among the latest records of a run in the report of the step that they are of.
-/// \param latest how many records the step made \param dimension of the model, 2 or 3
-CAROM_API void list_impacts(const RecordedEvents& events, std::size_t latest, int dimension,
-                            StepReport& report);
+/// \param latest how many records the step made
+CAROM_API void list_impacts(const RecordedEvents& events, std::size_t latest, StepReport& report);
 
 }  // namespace carom

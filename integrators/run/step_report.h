@@ -30,7 +30,6 @@ struct ContactPlace : ContactFrame {
   BodyId body;          ///< the body; of two bodies that of `a` of the key
   ObstacleId obstacle;  ///< the shape on ground that `body` touches; not valid: none
   BodyId other;         ///< the body that `body` touches; not valid: none
-  int directions = 2;   ///< 2 in the plane, 3 in space; 1 of a limit
   double gap = 0.0;     ///< when it was detected; > 0 of a lasting contact opened by turning [m]
 };
 

@@ -65,6 +65,14 @@ void bind_vector_of(nb::class_<P>& type) {
       nb::sig("def vector_of(self, by_direction: numpy.typing.ArrayLike) -> "
               "numpy.typing.NDArray[numpy.float64]"),
       doc("ContactFrame.vector_of"));
+  type.def_prop_ro(
+      "tangents",
+      [](const P& self) {
+        const auto [first, second] = self.tangents();
+        const std::array<double, 6> rows{first[0], first[1], first[2], second[0], second[1], second[2]};
+        return make_array(rows.data(), 2, 3);
+      },
+      nb::sig("def tangents(self) -> numpy.typing.NDArray[numpy.float64]"), doc("ContactFrame.tangents"));
 }
 
 /// A member of a contact's record, by direction, as a property that is a vector in the fixed frame.
@@ -101,7 +109,7 @@ void bind_events(nb::module_& core) {
         "obstacle", &P::obstacle)("element", &P::element)("joint", &P::joint)("other", &P::other)(
         "mode", &P::mode)("outcome", &P::outcome)("residual", &P::residual)("solver", &P::solver)(
         "instant", &P::instant)("velocity_before", &P::velocity_before)("velocity_after", &P::velocity_after)(
-        "impulse", &P::impulse)("point", &P::point)("normal", &P::normal)("tangents", &P::tangents)(
+        "impulse", &P::impulse)("directions", &P::directions)("point", &P::point)("normal", &P::normal)(
         "gap", &P::gap)("energy_before", &P::energy_before)("energy_after", &P::energy_after)(
         "motions", &P::motions)("stiffness", &P::stiffness)("free_acceleration", &P::free_acceleration)(
         "accumulation_time", &P::accumulation_time)("energy_gain", &P::energy_gain)(
@@ -115,11 +123,11 @@ void bind_steps(nb::module_& core) {
   bind_vectors_of_impulse(bind_record<ContactRecord>(core, "ContactRecord", keys, false, [](auto& fields) {
     using P = ContactRecord;
     fields("key", &P::key)("body", &P::body)("obstacle", &P::obstacle)("other", &P::other)(
-        "directions", &P::directions)("point", &P::point)("normal", &P::normal)("tangents", &P::tangents)(
-        "gap", &P::gap)("time", &P::time)("velocity_before", &P::velocity_before)(
-        "velocity_after", &P::velocity_after)("impulse", &P::impulse)("work", &P::work)("mode", &P::mode)(
-        "impact", &P::impact)("worst", &P::worst)("outcome", &P::outcome)("residual", &P::residual)(
-        "solver", &P::solver)("energy_gain", &P::energy_gain)("contact_work", &P::contact_work)(
+        "directions", &P::directions)("point", &P::point)("normal", &P::normal)("gap", &P::gap)(
+        "time", &P::time)("velocity_before", &P::velocity_before)("velocity_after", &P::velocity_after)(
+        "impulse", &P::impulse)("work", &P::work)("mode", &P::mode)("impact", &P::impact)("worst", &P::worst)(
+        "outcome", &P::outcome)("residual", &P::residual)("solver", &P::solver)(
+        "energy_gain", &P::energy_gain)("contact_work", &P::contact_work)(
         "restitution_factor", &P::restitution_factor)("cut_sequence", &P::cut_sequence)("rolling_moment",
                                                                                         &P::rolling_moment);
   }));
@@ -183,9 +191,9 @@ void bind_statistics(nb::module_& core) {
       core, "LastingContact", {"LastingContact", "ContactPlace", "ContactFrame"}, false, [](auto& fields) {
         using P = LastingContact;
         fields("key", &P::key)("body", &P::body)("obstacle", &P::obstacle)("other", &P::other)(
-            "directions", &P::directions)("point", &P::point)("normal", &P::normal)("tangents", &P::tangents)(
-            "gap", &P::gap)("velocity", &P::velocity)("force", &P::force)(
-            "rolling_moment", &P::rolling_moment)("mode", &P::mode);
+            "directions", &P::directions)("point", &P::point)("normal", &P::normal)("gap", &P::gap)(
+            "velocity", &P::velocity)("force", &P::force)("rolling_moment", &P::rolling_moment)("mode",
+                                                                                                &P::mode);
       });
   bind_vector_of(lasting);
   bind_vector<&LastingContact::velocity>(lasting, "velocity", "[m/s]");
