@@ -2,6 +2,7 @@
 
 #include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/contacts_of_two.h>
+#include <carom/contact/detection/gap_discs.h>
 #include <carom/contact/detection/corner_meeting.h>
 #include <carom/contact/detection/narrow_phase.h>
 
@@ -98,27 +99,35 @@ void add(const Outlines& outlines, Index i, Index j, const ContactQuery& query, 
   const std::vector<BodyOutline>& list = outlines.of_bodies().list();
   const double margin = query.lasting == nullptr ? query.margin : any_gap;
   const ConvexOutline of_a = placed_outline(list[i], memory), of_b = placed_outline(list[j], memory);
-  const auto add_if_any = [&](Touch touch) {
-    const bool touches = touch.gap.gap <= query.margin, is_apart = touch.gap.gap > query.margin;
-    if (!touches && !(is_apart && outlines.lasts(touch, query, memory.trial))) return false;
-    memory.touching.push_back(touch);
-    return true;
+  const auto add_if_any = [&](const GapPoint& gap, bool of_corners) {
+    const bool touches = gap.gap <= query.margin, is_apart = gap.gap > query.margin;
+    if (!touches && !is_apart) return false;  // no number
+    Touch& touch = memory.touching.emplace_back(Touch{i, j, gap, 0.0, of_corners});
+    if (touches || outlines.lasts(touch, query, memory.trial)) return true;
+    memory.touching.pop_back();
+    return false;
   };
   std::array<GapPoint, 2> found;
-  const int count = find_gaps(of_a, of_b, margin, found);
+  // Of discs there are most: their entry is called as it is.
+  const bool are_discs = of_a.size() == 1 && of_b.size() == 1;
+  const int count = are_discs ? GapDiscs::find(PlacedOutline(of_a), PlacedOutline(of_b), margin, found)
+                              : find_gaps(of_a, of_b, margin, found);
+  if (of_a.radius + of_b.radius > 0.0) {  // round: no corners meet
+    for (int k = 0; k < count; ++k) add_if_any(found[static_cast<std::size_t>(k)], false);
+    return;
+  }
   if (count == 0) return;
   const double same_place = outlines.on_ground().lengths().corner;
   const auto corners_near = [&](const GapPoint& gap) -> std::optional<CornerMeeting> {
-    if (of_a.radius + of_b.radius > 0.0 || !is_near_corner(gap, same_place)) return {};
+    if (!is_near_corner(gap, same_place)) return {};
     return meeting_of_bodies(outlines, {i, j, gap}, query, memory);
   };
   const auto have_one_name = [&](const GapPoint& one, const GapPoint& other) {
     return outlines.key_of(i, j, one) == outlines.key_of(i, j, other);
   };
   const auto add_one = [&](const GapPoint& gap, bool of_corners, TwoOutlines::Adds adds) {
-    const Touch touch{i, j, gap, 0.0, of_corners};
-    if (adds == TwoOutlines::Adds::if_it_touches) return add_if_any(touch);
-    memory.touching.push_back(touch);
+    if (adds == TwoOutlines::Adds::if_it_touches) return add_if_any(gap, of_corners);
+    memory.touching.push_back({i, j, gap, 0.0, of_corners});
     return true;
   };
   list_contacts({found.data(), static_cast<std::size_t>(count)},

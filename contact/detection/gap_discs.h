@@ -22,7 +22,7 @@ struct GapDiscs {
     const double reach = a.outline.radius + b.outline.radius + margin;
     // Discs far from each other need no root; the last digits are left to the comparison below.
     if (x * x + y * y > 1.0001 * (reach * reach) || reach < 0.0) return 0;
-    out[0] = gap_of_vertices(a.outline, 0, b.outline, 0);
+    write_gap_of_vertices(a.outline, 0, b.outline, 0, out[0]);
     return out[0].gap <= margin ? 1 : 0;
   }
   /// As NarrowPhase::follow.

@@ -50,16 +50,24 @@ inline double beyond_edges(const ConvexOutline& of, Index vertex, const Vec<2>& 
 
 /// Gap of vertex i of a and vertex j of b. It is not signed: it grows again once centres have passed each
 /// other.
-inline GapPoint gap_of_vertices(const ConvexOutline& a, Index i, const ConvexOutline& b, Index j) {
+inline void write_gap_of_vertices(const ConvexOutline& a, Index i, const ConvexOutline& b, Index j,
+                                  GapPoint& out) {
   const Vec<2>&centre_a = a.vertices[i], &centre_b = b.vertices[j];
-  GapPoint out;
   out.feature_a = i;
   out.feature_b = j;
+  out.kind = GapKind::vertices;
   out.normal = centre_a - centre_b;
   out.gap = split_length(out.normal) - (a.radius + b.radius);
   out.point_a = centre_a - a.radius * out.normal;
   out.point_b = centre_b + b.radius * out.normal;
   out.within = std::min(beyond_edges(a, i, centre_b), beyond_edges(b, j, centre_a));
+}
+
+/// Gap of vertex i of a and vertex j of b, as write_gap_of_vertices().
+[[nodiscard]] inline GapPoint gap_of_vertices(const ConvexOutline& a, Index i, const ConvexOutline& b,
+                                              Index j) {
+  GapPoint out;
+  write_gap_of_vertices(a, i, b, j, out);
   return out;
 }
 
