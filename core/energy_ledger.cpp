@@ -49,6 +49,14 @@ void EnergyLedger::store(const StoredEnergies& stored) {
   scale_ = largest;
 }
 
+void EnergyLedger::add_flows(const EnergyLedger& part) {
+  scale_ = std::max(scale_, part.scale_);
+  for (std::size_t i = 0; i < energy_flow_count; ++i) {
+    flows_[i].add(part.flows_[i].value());
+    scale_ = std::max(scale_, std::abs(flows_[i].value()));
+  }
+}
+
 void EnergyLedger::book(EnergyFlow flow, double amount, const StoredEnergies& stored) {
   if (amount != 0.0) {
     CompensatedSum& sum = flows_[term_place(flow, energy_flow_count)];

@@ -21,6 +21,8 @@ public:
   void open(const StoredEnergies& stored);
   /// Books a step: the flows in the step, and the stored energies after it.
   void book(const EnergyFlows& flows, const StoredEnergies& stored);
+  /// Adds the flows of another ledger, of some of the bodies, and takes its scale in; stored energies stay.
+  void add_flows(const EnergyLedger& part);
   /// Books a step with one flow, and the stored energies after it. \param amount of the flow [J]
   void book(EnergyFlow flow, double amount, const StoredEnergies& stored);
 

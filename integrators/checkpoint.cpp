@@ -119,7 +119,6 @@ std::string write_checkpoint(std::uint64_t fingerprint, const State& state, cons
   }
   add(out, companion.joints);
   add(out, companion.contacts);
-  out.add(companion.closings.steps_owed);
   out.add(std::uint64_t{companion.closings.all_free});
   out.add(std::uint64_t{companion.closings.free.size()});
   for (const ConstraintKey& key : companion.closings.free) add(out, key);
@@ -337,7 +336,10 @@ void read_checkpoint(std::string_view content, const std::string& origin, std::u
     read_joint_history(in, version, state.v.size(), other.joints);
     read_contacts(in, version, other.contacts);
   }
-  if (version >= 11) in.get(other.closings.steps_owed);
+  if (version >= 11 && version < 15) {
+    std::int64_t unused = 0;  // steps that closings were allowed to take
+    in.get(unused);
+  }
   if (version >= 14) read_closings(in, other.closings);
   in.finish();
   demand_rhythms(origin, other.rhythms, companion.rhythms);

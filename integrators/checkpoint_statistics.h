@@ -11,7 +11,7 @@
 namespace carom {
 
 /// Version of the checkpoints that are written.
-inline constexpr int checkpoint_version = 14;
+inline constexpr int checkpoint_version = 15;
 /// Oldest version that is read. Those before version 7 know nothing of joints and of large contact problems:
 /// a run goes on from one without guesses.
 inline constexpr int oldest_checkpoint = 6;

@@ -19,7 +19,7 @@ ModeMachines::ModeMachines(const Assembly& assembly, const Mode& mode, const Sto
   if (const auto* options = std::get_if<TimeStepping>(&mode)) {
     stepper = std::make_unique<TimeStepper>(assembly, *options, stop);
     controller = std::make_unique<StepController>(assembly, *options);
-    if (PartedSteps::needed(assembly, *stepper)) parted = std::make_unique<PartedSteps>(assembly, *stepper);
+    if (SetPhases::needed(assembly, *stepper)) phased = std::make_unique<PhasedSteps>(assembly, *stepper);
   } else {
     driver = std::make_unique<EventDriver>(assembly, std::get<EventDriven>(mode), stop);
   }
@@ -29,7 +29,8 @@ void ModeMachines::advance(const Run& run, double limit) {
   State& state = run.state;
   Companion& companion = run.companion;
   const auto make_step = [&](State& from, Companion& with, double step, double end, StepReport& report) {
-    parted ? parted->step(from, with, step, end, report) : stepper->step(from, with, step, end, report);
+    if (phased) return phased->step(from, with, step, end, report);
+    stepper->step(from, with, step, end, report);
   };
   if (controller && std::get<TimeStepping>(run.mode).control) {
     controller->step(make_step, state, companion, limit, run.report);

@@ -7,7 +7,7 @@
 #include <carom/integrators/event_driven/event_driver.h>
 #include <carom/integrators/run/stop_request.h>
 #include <carom/integrators/simulation.h>
-#include <carom/integrators/time_stepping/parted_steps.h>
+#include <carom/integrators/time_stepping/phased_steps.h>
 #include <carom/integrators/time_stepping/step_controller.h>
 #include <carom/integrators/time_stepping/time_stepper.h>
 
@@ -46,7 +46,7 @@ struct ModeMachines {
 
   std::unique_ptr<TimeStepper> stepper;        ///< null in the event-driven mode
   std::unique_ptr<StepController> controller;  ///< null in the event-driven mode
-  std::unique_ptr<PartedSteps> parted;         ///< null where no step has to be parted
+  std::unique_ptr<PhasedSteps> phased;         ///< null where steps have one phase
   std::unique_ptr<EventDriver> driver;         ///< null in time stepping
   const StopRequest* stop;                     ///< asked within steps
 

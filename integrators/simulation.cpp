@@ -253,7 +253,6 @@ void Simulation::switch_to(Mode mode) {
   self.model->machines = std::move(machines);
   self.companion.next_step = 0.0;
   self.companion.iterations.clear();
-  self.companion.closings.steps_owed = 0;
   restart_grid(self.companion, self.state.time);
 }
 

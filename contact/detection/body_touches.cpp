@@ -2,8 +2,8 @@
 
 #include <carom/contact/detection/body_touches.h>
 #include <carom/contact/detection/contacts_of_two.h>
-#include <carom/contact/detection/gap_discs.h>
 #include <carom/contact/detection/corner_meeting.h>
+#include <carom/contact/detection/gap_discs.h>
 #include <carom/contact/detection/narrow_phase.h>
 
 #include <algorithm>
@@ -43,6 +43,7 @@ void place(const BodyOutlines& outlines, const BodySlots& bodies, const ContactQ
   memory.placed.resize(outlines.vertices().size());
   memory.sides.resize(list.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!query.bodies.has(list[i].body)) continue;
     const BodySlot slot = bodies[list[i].body];
     outlines.place(list[i], slot, query.state, query.evaluation,
                    memory.placed.data() + list[i].vertices.begin);
@@ -58,6 +59,7 @@ void add_lasting_pairs(const Outlines& outlines, const ContactQuery& query, Body
   const std::size_t known = pairs.size();
   look_up_lasting(outlines, query.lasting->keys(), memory);
   for (const std::pair<Index, Index>& pair : memory.pairs_of_lasting) {
+    if (!query.bodies.has(list[pair.first].body) || !query.bodies.has(list[pair.second].body)) continue;
     if (are_within(memory.boxes[pair.first], memory.boxes[pair.second], query.margin)) continue;
     if (outlines.laws().may_touch(list[pair.first], list[pair.second])) pairs.push_back(pair);
   }
@@ -72,9 +74,11 @@ void collect_pairs(const Outlines& outlines, const ContactQuery& query, BodyCont
   const std::vector<BodyOutline>& list = outlines.of_bodies().list();
   auto& pairs = memory.pairs;
   pairs.clear();
-  memory.boxes.clear();
-  for (const BodyOutline& outline : list) {
-    memory.boxes.push_back(box_around(placed_outline(outline, memory).vertices, outline.radius));
+  // Boxes of bodies that are not chosen stay where they were.
+  memory.boxes.resize(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!query.bodies.has(list[i].body)) continue;
+    memory.boxes[i] = box_around(placed_outline(list[i], memory).vertices, list[i].radius);
   }
   if (memory.broad.size() != list.size()) {
     std::vector<Index> owners;
@@ -83,6 +87,7 @@ void collect_pairs(const Outlines& outlines, const ContactQuery& query, BodyCont
     memory.broad.reset(owners);
   }
   const auto add = [&](Index i, Index j) {
+    if (!query.bodies.has(list[i].body) || !query.bodies.has(list[j].body)) return;
     if (!outlines.laws().all_bodies_may_touch() && !outlines.laws().may_touch(list[i], list[j])) return;
     if (outlines.of_bodies().are_in_order_of_keys() ? j < i : list[j].key < list[i].key) std::swap(i, j);
     pairs.emplace_back(i, j);

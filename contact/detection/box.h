@@ -16,6 +16,12 @@ template <int D>
 struct Box {
   Vec<D> min = Vec<D>::Zero();  ///< least coordinates
   Vec<D> max = Vec<D>::Zero();  ///< largest coordinates
+
+  /// Takes another box in.
+  void extend(const Box& other) {
+    min = min.cwiseMin(other.min);
+    max = max.cwiseMax(other.max);
+  }
 };
 
 /// The box around some points, one at least, wider by some distance on all sides [m].

@@ -6,11 +6,15 @@ ContactLook::ContactLook(const Assembly& assembly, const Detector& detector)
     : assembly_(&assembly), detector_(&detector), evaluation_(make_evaluation(assembly)) {}
 
 void ContactLook::find(const StateView& state, double margin, ConstraintSet& out, const GroundPlaces* after,
-                       const LastingContacts* lasting) {
-  evaluate_positions(*assembly_, state, evaluation_);
+                       const LastingContacts* lasting, const ChosenBodies& bodies) {
+  if (bodies.are_all()) evaluate_positions(*assembly_, state, evaluation_);
+  for (const Range components : bodies.components) {
+    for (Index component = components.begin; component < components.end; ++component)
+      evaluate_positions(*assembly_, component, state, evaluation_);
+  }
   detector_->place(state.time, places_);
   out.clear();
-  detector_->find_all({state, evaluation_, places_, after, margin, lasting}, search_, out);
+  detector_->find_all({state, evaluation_, places_, after, margin, lasting, {}, bodies}, search_, out);
 }
 
 }  // namespace carom

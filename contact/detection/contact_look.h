@@ -27,9 +27,9 @@ public:
 
   /// Lists all contacts, and limits of joints, whose gap is <= `margin` [m], as Detector::find_all().
   /// \param after the ground at the end of a step that begins with the state; null: no time passes
-  /// \param lasting contacts that may be a little open; null: none
+  /// \param lasting contacts that may be a little open; null: none \param bodies whose contacts are listed
   void find(const StateView& state, double margin, ConstraintSet& out, const GroundPlaces* after = nullptr,
-            const LastingContacts* lasting = nullptr);
+            const LastingContacts* lasting = nullptr, const ChosenBodies& bodies = {});
   /// The contact of a pair, whatever its gap, at the state of the last find().
   void contact(const ContactPair& pair, const StateView& state, Constraint& out) const {
     detector_->contact(pair, state, evaluation_, places_, out);

@@ -7,9 +7,24 @@
 #include <carom/contact/detection/lasting_contacts.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/function_ref.h>
+#include <carom/core/ids.h>
 #include <carom/core/state.h>
 
+#include <cstdint>
+#include <span>
+
 namespace carom {
+
+/// Some bodies of a model, those of some components; or all. A view.
+struct ChosenBodies {
+  std::span<const Range> components = {};        ///< ascending
+  std::span<const std::uint8_t> is_chosen = {};  ///< by body; empty: all are chosen
+
+  /// True if all bodies are chosen.
+  [[nodiscard]] bool are_all() const { return is_chosen.empty(); }
+  /// True of a body that is chosen.
+  [[nodiscard]] bool has(Index body) const { return is_chosen.empty() || is_chosen[body] != 0; }
+};
 
 /// A state, and which contacts of it are asked for. It is read during the call that it is given to.
 struct ContactQuery {
@@ -21,6 +36,8 @@ struct ContactQuery {
   const LastingContacts* lasting = nullptr;  ///< found also where they are a little open; null: none
   /// True of contacts with ground shapes of one piece that are not asked for; empty: none.
   FunctionRef<bool(Index body, const ConstraintKey& key)> leaves_out = {};
+  /// Contacts of bodies with each other are asked for of these alone. What is not chosen is not looked at.
+  ChosenBodies bodies = {};
 
   /// The end of the step, for a shape. \param shapes whose `places` these are
   [[nodiscard]] GroundAtEnd end_of(const GroundShapes& shapes, Index shape) const {

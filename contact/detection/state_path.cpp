@@ -18,7 +18,7 @@ StatePath::StatePath(const Assembly& assembly, const Detector& detector)
       displacement_(begin_.v.size(), 0.0),
       acceleration_(begin_.v.size(), 0.0) {}
 
-void StatePath::set(const State& from, const State& to, const double* change) {
+void StatePath::set(const State& from, const State& to, const double* change, const ChosenBodies& bodies) {
   begin_.time = from.time;
   end_.time = to.time;
   begin_.q = from.q;
@@ -35,8 +35,13 @@ void StatePath::set(const State& from, const State& to, const double* change) {
       end_.v[v] = begin_.v[v] + by;
     }
   }
-  evaluate_positions(*assembly_, begin_.view(), at_begin_);
-  evaluate_positions(*assembly_, end_.view(), at_end_);
+  const Range all{0, static_cast<Index>(assembly_->components().size())};
+  for (const Range components : bodies.are_all() ? std::span(&all, 1) : bodies.components) {
+    for (Index component = components.begin; component < components.end; ++component) {
+      evaluate_positions(*assembly_, component, begin_.view(), at_begin_);
+      evaluate_positions(*assembly_, component, end_.view(), at_end_);
+    }
+  }
   detector_->place(begin_.time, ground_[0]);
   detector_->place(end_.time, ground_[1]);
   watches_ = 0;

@@ -4,6 +4,7 @@
 /// The path between two states: how all bodies of a model move in a span of time at whose ends they are
 /// known.
 
+#include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/detection/first_closing.h>
 #include <carom/core/assembly.h>
@@ -31,8 +32,9 @@ public:
   StatePath(const Assembly& assembly, const Detector& detector);
 
   /// Makes it the path between two states, which must have different times. \param change of velocities from
-  /// one end to the other, an array over all velocities; null: coordinates change evenly
-  void set(const State& from, const State& to, const double* change);
+  /// one end to the other, an array over all velocities; null: coordinates change evenly \param bodies whose
+  /// path is asked for
+  void set(const State& from, const State& to, const double* change, const ChosenBodies& bodies = {});
   /// The motion of all bodies where the path begins. Valid until set().
   [[nodiscard]] PathSample begin() const {
     return {begin_.view(), acceleration_.data(), at_begin_, ground_[0]};

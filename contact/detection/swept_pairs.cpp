@@ -105,9 +105,10 @@ bool SweptPairs::may_close(const StatePath& path, const FlatGroup& group) const 
 }
 
 /// Vertices of all outlines of bodies at both ends of a path.
-void SweptPairs::place(const StatePath& path) {
+void SweptPairs::place(const StatePath& path, const ChosenBodies& bodies) {
   const Outlines& outlines = detector_->outlines();
   for (const BodyOutline& outline : outlines.of_bodies().list()) {
+    if (!bodies.has(outline.body)) continue;
     const BodySlot slot = outlines.slots()[outline.body];
     for (std::size_t end = 0; end < ends_.size(); ++end) {
       const PathSample at = end == 0 ? path.begin() : path.end();
@@ -226,16 +227,25 @@ void SweptPairs::add(const StatePath& path, const ContactPair& pair, const NearO
   list_.push_back(of);
 }
 
-std::span<const NearOutlines> SweptPairs::find_outlines(const StatePath& path) {
+std::span<const Box<2>> SweptPairs::sweep(const StatePath& path, const ChosenBodies& bodies) {
+  const std::vector<BodyOutline>& list = detector_->outlines().of_bodies().list();
+  place(path, bodies);
+  for (Index i = 0; i < boxes_.size(); ++i) {
+    if (bodies.has(list[i].body)) boxes_[i] = box_of(path, i);
+  }
+  return boxes_;
+}
+
+std::span<const NearOutlines> SweptPairs::find_outlines(const StatePath& path, const ChosenBodies& bodies) {
   const Outlines& outlines = detector_->outlines();
   outlines_.clear();
   if (!outlines.bodies_touch() && !outlines.ground_touches()) return outlines_;
-  place(path);
+  static_cast<void>(sweep(path, bodies));
   const auto count = static_cast<Index>(boxes_.size());
-  for (Index i = 0; i < count; ++i) boxes_[i] = box_of(path, i);
   const std::vector<BodyOutline>& list = outlines.of_bodies().list();
   const GroundPieces& pieces = outlines.on_ground();
   for (Index i = 0; outlines.ground_touches() && i < count; ++i) {
+    if (!bodies.has(list[i].body)) continue;
     const auto box = [&](Index shape) { return box_in(path, i, shape); };
     detector_->on_ground().list_near(box, near_);
     for (const Index piece : near_) {
@@ -245,7 +255,8 @@ std::span<const NearOutlines> SweptPairs::find_outlines(const StatePath& path) {
   }
   if (!outlines.bodies_touch()) return outlines_;
   for (const BoxPair& near : broad_.update(boxes_)) {
-    if (outlines.laws().may_touch(list[near.first], list[near.second]))
+    const BodyOutline &a = list[near.first], &b = list[near.second];
+    if (bodies.has(a.body) && bodies.has(b.body) && outlines.laws().may_touch(a, b))
       outlines_.push_back({.a = near.first, .b = near.second});
   }
   return outlines_;

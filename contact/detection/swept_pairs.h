@@ -9,6 +9,7 @@
 #include <carom/contact/detection/box.h>
 #include <carom/contact/detection/broad_phase.h>
 #include <carom/contact/detection/contact_pair.h>
+#include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/detection/first_closing.h>
 #include <carom/contact/detection/state_path.h>
@@ -67,9 +68,14 @@ public:
   /// \param assembly,detector must outlive it \param flat which pairs without outlines find_pairs() lists
   SweptPairs(const Assembly& assembly, const Detector& detector, FlatPairs flat);
 
+  /// Boxes around all that the outlines of bodies sweep on a path, by outline. Throws ModelError where a body
+  /// is not at a finite place. Valid until the next path.
+  /// \param bodies others have boxes of earlier paths
+  [[nodiscard]] std::span<const Box<2>> sweep(const StatePath& path, const ChosenBodies& bodies = {});
   /// Lists all outlines whose boxes around what they sweep on a path overlap. Throws ModelError where a body
-  /// is not at a finite place. The list is valid until the next call.
-  [[nodiscard]] std::span<const NearOutlines> find_outlines(const StatePath& path);
+  /// is not at a finite place. The list is valid until the next call. \param bodies whose outlines are listed
+  [[nodiscard]] std::span<const NearOutlines> find_outlines(const StatePath& path,
+                                                            const ChosenBodies& bodies = {});
   /// Lists all pairs whose gap may be zero, or less, on the path of the last find_outlines(). The list is
   /// valid until the next call. \param looks false of a pair that is left out
   [[nodiscard]] std::span<const SweptPair> find_pairs(const StatePath& path,
@@ -78,7 +84,7 @@ public:
 private:
   [[nodiscard]] Box<2> box_of(const StatePath& path, Index outline) const;
   [[nodiscard]] Box<2> box_in(const StatePath& path, Index outline, Index shape) const;
-  void place(const StatePath& path);
+  void place(const StatePath& path, const ChosenBodies& bodies);
   void add(const StatePath& path, const ContactPair& pair, const NearOutlines& outlines);
   /// Points of one body with one shape on ground that has no pieces; or a limit of a joint.
   struct FlatGroup {

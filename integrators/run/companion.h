@@ -50,7 +50,6 @@ struct ClosingNotes {
   bool all_free = true;
   std::vector<ConstraintKey> free;  ///< slow ones that nothing presses: they rebound
   std::vector<ConstraintKey> cut;   ///< beyond TimeStepping::most_impacts: they do not
-  std::int64_t steps_owed = 0;      ///< that were made to find closings, beyond PartedSteps::steps_per_step
 };
 
 /// With the state, all that a checkpoint holds (but `loads` where they follow from the state).

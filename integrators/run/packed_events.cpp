@@ -43,6 +43,7 @@ Words words_of(const EventRecord& event) {
   clear_between(b.owner, b.serial);
   clear_between(event.outcome, event.residual);
   clear_between(event.cut_sequence, event.rolling_moment);
+  clear_between(event.directions, event.time);
   clear_between(event.kind, event.velocity_before);
   clear(place_of(event, event.time), place_of(event, event.time) + sizeof event.time);
   clear(place_of(event, event.instant), place_of(event, event.instant) + sizeof event.instant);

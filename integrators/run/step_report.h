@@ -86,7 +86,7 @@ struct StepNumbers : IterationReport {
   /// problems that gained: in impacts by the law, in lasting contact by an error of the step [J].
   double energy_gain = 0.0;
   double lasting_gain = 0.0;  ///< part of it in lasting contact (docs/energy.md) [J]
-  int steps_made = 1;         ///< of the whole model, where it ends at closings (PartedSteps::steps_per_step)
+  int steps_made = 1;         ///< in its phases, by what they took: one of half of the bodies is half of one
   double projected = 0.0;     ///< largest displacement by which a body was moved out of shapes [m]
   ControlReport control;      ///< of step control
 };

@@ -5,7 +5,10 @@
 
 namespace carom {
 
-void add(const StepReport& part, StepReport& sum) {
+namespace {
+
+/// All but the impulses of joints.
+void add_all_else(const StepReport& part, StepReport& sum) {
   sum.time = part.time;
   sum.iteration = std::max(sum.iteration, part.iteration);
   sum.fallbacks += part.fallbacks;
@@ -21,13 +24,31 @@ void add(const StepReport& part, StepReport& sum) {
   sum.projected = std::max(sum.projected, part.projected);
   if (!part.capped_problem.empty()) sum.capped_problem = part.capped_problem;  // worse than those before
   sum.contacts.insert(sum.contacts.end(), part.contacts.begin(), part.contacts.end());
+}
+
+/// The impulse of a joint in a report. \param likely its place, if components were advanced in the same order
+const JointImpulse& impulse_of(JointId joint, const StepReport& report, std::size_t likely) {
+  const std::vector<JointImpulse>& list = report.joint_impulses;
+  if (list[likely].joint == joint) return list[likely];
+  return *std::find_if(list.begin(), list.end(), [&](const JointImpulse& at) { return at.joint == joint; });
+}
+
+}  // namespace
+
+void add(const StepReport& part, StepReport& sum) {
+  add_all_else(part, sum);
   for (std::size_t i = 0; i < sum.joint_impulses.size(); ++i) {
     JointImpulse& to = sum.joint_impulses[i];
-    const JointImpulse& more = part.joint_impulses[i];
+    const JointImpulse& more = impulse_of(to.joint, part, i);
     for (std::size_t k = 0; k < to.impulse.force.size(); ++k) to.impulse.force[k] += more.impulse.force[k];
     to.impulse.moment += more.impulse.moment;
     to.time = more.time;
   }
+}
+
+void join(const StepReport& part, StepReport& sum) {
+  add_all_else(part, sum);
+  sum.joint_impulses.insert(sum.joint_impulses.end(), part.joint_impulses.begin(), part.joint_impulses.end());
 }
 
 }  // namespace carom

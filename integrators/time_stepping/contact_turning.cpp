@@ -107,8 +107,8 @@ double ContactTurning::reach(const StepInput& in) const {
   return more * largest;
 }
 
-void ContactTurning::find_at(const State& state, double margin, ConstraintSet& out) {
-  look_.find(state.view(), margin, out, nullptr, &lasting_);
+void ContactTurning::find_at(const State& state, const StepInput& in, double margin, ConstraintSet& out) {
+  look_.find(state.view(), margin, out, nullptr, &lasting_, in.bodies());
   std::sort(out.begin(), out.end(), is_before);
 }
 
@@ -116,20 +116,32 @@ bool ContactTurning::turn(const StepInput& in, StepTrial& trial, std::span<const
                           double tolerance, double residual) {
   if (turned_.empty() && mechanisms_.empty()) return false;
   if (convergence_.has_converged(trial, tolerance / in.step, residual)) return false;
-  middle_ = trial.end;
-  middle_.time = in.start.time + 0.5 * in.step;
-  // In the plane coordinates and velocities correspond one to one.
-  for (std::size_t i = 0; i < middle_.q.size(); ++i) middle_.q[i] = 0.5 * (in.start.q[i] + trial.end.q[i]);
   end_ = trial.end;
+  return turn_along(in, trial, islands);
+}
+
+void ContactTurning::predict(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands) {
+  if (turned_.empty() || !mechanisms_.empty()) return;
+  end_ = in.start;
+  // In the plane coordinates and velocities correspond one to one.
+  for (std::size_t i = 0; i < end_.q.size(); ++i) end_.q[i] += in.step * end_.v[i];
+  static_cast<void>(turn_along(in, trial, islands));
+}
+
+/// Brings the constraints to the path from the start of the step to `end_`. True if any turns.
+bool ContactTurning::turn_along(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands) {
   end_.time = in.end_time;
+  middle_ = end_;
+  middle_.time = in.start.time + 0.5 * in.step;
+  for (std::size_t i = 0; i < middle_.q.size(); ++i) middle_.q[i] = 0.5 * (in.start.q[i] + end_.q[i]);
   bool any = false;
   for (const Index component : mechanisms_) {
     JointStage& joints = *joints_->of(component);
     any = joints.answer().follow_path(in, middle_, joints.rows(), trial) || any;
   }
   const double margin = reach(in);
-  find_at(middle_, margin, found_.middle);
-  find_at(end_, margin, found_.end);
+  find_at(middle_, in, margin, found_.middle);
+  find_at(end_, in, margin, found_.end);
   for (Turned& turned : turned_) any = turn(turned, in.start.v.data(), end_.v.data(), trial) || any;
   for (const StepIsland& island : islands) restore(island);
   return any;
@@ -183,7 +195,7 @@ bool ContactTurning::turn(Turned& turned, const double* v0, const double* v1, co
 }
 
 double ContactTurning::work(const IslandProblem& problem) const {
-  if (convergence_.passes() == 0) return 0.0;
+  if (turned_.empty()) return 0.0;
   double sum = 0.0;
   for (std::size_t c = 0; c < problem.constraints().size(); ++c) {
     const Constraint& contact = problem.constraints()[c];

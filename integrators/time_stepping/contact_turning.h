@@ -43,6 +43,8 @@ public:
   /// Begins a step whose constraints are those of some islands, as they are at its start. \param step [s]
   /// \param alone whether bodies none of whose contacts is shared are followed by themselves
   void begin(std::span<const StepIsland> islands, double step, bool alone);
+  /// Brings the constraints to the path that the velocities at the start lead along. Not those of mechanisms.
+  void predict(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands);
   /// Brings the constraints to the path of the trial, and the joints that answer them. False if they are
   /// there: nothing turns, or further passes are of no use (PassConvergence).
   /// \param tolerance of h times velocities [m] \param residual the largest certificate of the answers
@@ -68,7 +70,8 @@ private:
   [[nodiscard]] std::size_t find(const Constraint& contact) const;
   [[nodiscard]] bool turn(Turned& turned, const double* v0, const double* v1, const StepTrial& at) const;
   [[nodiscard]] double reach(const StepInput& in) const;
-  void find_at(const State& state, double margin, ConstraintSet& out);
+  void find_at(const State& state, const StepInput& in, double margin, ConstraintSet& out);
+  [[nodiscard]] bool turn_along(const StepInput& in, StepTrial& trial, std::span<const StepIsland> islands);
 
   ContactLook look_;
   LastingContacts lasting_;  // those that turn

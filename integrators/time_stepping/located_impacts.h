@@ -26,7 +26,7 @@ public:
   LocatedImpacts(const Assembly& assembly, const Detector& detector, const TimeStepping& options);
 
   /// True if impacts are located here. Those of other laws than Newton's, or with rules of their own, are by
-  /// steps that end there (parted_steps.h).
+  /// steps that end there (set_phases.h).
   [[nodiscard]] bool on() const { return on_; }
   /// Forgets all bodies.
   void clear() {

@@ -84,16 +84,49 @@ double StepClosings::most_approach() const {
 }
 
 StepClosing StepClosings::first(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes) {
-  StepClosing first;
+  begin(way);
+  while (found_.empty() && paths_.next()) search(way, closes, Keeps::first);
+  return found_.empty() ? StepClosing{} : found_.front();
+}
+
+std::span<const StepClosing> StepClosings::all(const StepWay& way,
+                                               FunctionRef<bool(const SweptPair&)> closes) {
+  begin(way);
+  while (paths_.next()) search(way, closes, Keeps::all);
+  return found_;
+}
+
+void StepClosings::add_boxes(const StepWay& way, std::vector<Box<2>>& boxes) {
+  const std::vector<BodyOutline>& outlines = detector_->outlines().of_bodies().list();
+  paths_.begin(way, form());
+  while (paths_.next()) {
+    const std::span<const Box<2>> swept = pairs_.sweep(paths_.path(), way.bodies);
+    for (std::size_t i = 0; i < swept.size(); ++i) {
+      if (way.bodies.has(outlines[i].body)) boxes[i].extend(swept[i]);
+    }
+  }
+}
+
+void StepClosings::begin(const StepWay& way) {
+  found_.clear();
   left_out_ = false;
   if (of_contacts_) list_acted(way.acted);
-  paths_.begin(way, of_contacts_ ? WayPaths::Form::parabola : WayPaths::Form::chord);
-  while (first.time == never && paths_.next()) search(way, closes, first);
-  return first;
+  paths_.begin(way, form());
+}
+
+/// Later closings than this are not kept.
+double StepClosings::until(Keeps which) const {
+  return which == Keeps::all || found_.empty() ? never : found_.front().time;
+}
+
+void StepClosings::keep(const StepClosing& closing, Keeps which) {
+  if (which == Keeps::first) found_.clear();
+  found_.push_back(closing);
 }
 
 /// True of a pair whose closings may be looked for, as far as that can be told without its contact.
 bool StepClosings::looks_at(const StepWay& way, const ContactPair& pair) const {
+  if (!way.bodies.has(pair.body) || (pair.other != none && !way.bodies.has(pair.other))) return false;
   if (way.flights.follow(pair)) return false;
   if (pair.has_outline() && acts(pair.feature, pair.outline, {})) return false;
   const auto lists = [&](const std::vector<ContactPair>& pairs) {
@@ -104,7 +137,7 @@ bool StepClosings::looks_at(const StepWay& way, const ContactPair& pair) const {
 
 /// Searches the path for contacts that close: such as are open where it begins, and do not act on it.
 void StepClosings::search_contacts(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes,
-                                   StepClosing& first) {
+                                   Keeps which) {
   const auto looks = [&](const ContactPair& pair) { return looks_at(way, pair); };
   for (const SweptPair& pair : pairs_.find_pairs(paths_.path(), looks)) {
     if (!(pair.gap >= -rounding_)) continue;
@@ -112,41 +145,44 @@ void StepClosings::search_contacts(const StepWay& way, FunctionRef<bool(const Sw
     StepClosing closing;
     closing.pair = pair;
     closing.key = pair.key;
+    closing.body = pair.pair.body;
     closing.deep = -rounding_;
     if (!closes(pair)) {
       look_at_end(closing);
       left_out_ = left_out_ || (closing.gap < closing.deep && counts(closing, closing.rate));
-    } else if (reaches(closing, first.time)) {
-      first = closing;
+    } else if (reaches(closing, until(which))) {
+      keep(closing, which);
     }
   }
 }
 
 /// Searches the path.
-void StepClosings::search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes,
-                          StepClosing& first) {
+void StepClosings::search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, Keeps which) {
   const double approach = most_approach();
   const bool of_depths = approach > levels_.thinnest();
   if (!of_contacts_ && !of_depths) return;
-  const std::span<const NearOutlines> near = pairs_.find_outlines(paths_.path());
-  if (of_contacts_) search_contacts(way, closes, first);
-  if (of_depths) search_depths(near, approach, first);
+  const std::span<const NearOutlines> near = pairs_.find_outlines(paths_.path(), way.bodies);
+  if (of_contacts_) search_contacts(way, closes, which);
+  if (of_depths) search_depths(near, approach, which);
 }
 
 /// Searches the path for depths. Two outlines that come nearer by less than is allowed are passed over.
-void StepClosings::search_depths(std::span<const NearOutlines> near, double approach, StepClosing& first) {
+void StepClosings::search_depths(std::span<const NearOutlines> near, double approach, Keeps which) {
   constexpr double fine = 0.5;  // of the depth
+  const std::vector<BodyOutline>& list = detector_->outlines().of_bodies().list();
   for (const NearOutlines& of : near) {
     const double allowed = levels_.allowed(of);
     if (!(approach > allowed)) continue;
     const double at_start = depths_.gap_at_begin(paths_.whole(), of);
     const double level = std::min(at_start, 0.0) - allowed;
-    const double time = depths_.first(paths_.path(), of, level, fine * allowed, first.time);
-    if (!(time < first.time)) continue;
-    first = {};
-    first.time = time;
-    first.is_passage = true;
-    first.key = depths_.key_at_begin(paths_.path(), of);
+    const double time = depths_.first(paths_.path(), of, level, fine * allowed, until(which));
+    if (!(time < until(which))) continue;
+    StepClosing passage;
+    passage.time = time;
+    passage.is_passage = true;
+    passage.key = depths_.key_at_begin(paths_.path(), of);
+    passage.body = list[of.a].body;
+    keep(passage, which);
   }
 }
 

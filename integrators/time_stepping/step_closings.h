@@ -42,6 +42,7 @@ struct StepClosing {
   bool is_passage = false;  ///< the level is a depth
   SweptPair pair;           ///< whose gap it is; not of a passage
   ConstraintKey key;        ///< of the contact
+  Index body = none;        ///< one of its bodies
   double shallow = 0.0;     ///< a step may end at any gap from this one down [m]
   double deep = 0.0;        ///< to this one [m]
   bool dips = false;        ///< the gap is open again where the way ends on which it was found
@@ -84,6 +85,12 @@ public:
   /// The first closing on a way. \param closes whether a contact is looked for that closes; of others nothing
   /// but their passages is
   [[nodiscard]] StepClosing first(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes);
+  /// All closings on a way, in any order: of each pair the first.
+  /// \param closes as of first()
+  [[nodiscard]] std::span<const StepClosing> all(const StepWay& way,
+                                                 FunctionRef<bool(const SweptPair&)> closes);
+  /// Extends boxes around all that outlines of bodies sweep, by outline: by a way.
+  void add_boxes(const StepWay& way, std::vector<Box<2>>& boxes);
   /// True if a contact has closed on the way that was searched last, and was not looked for.
   [[nodiscard]] bool any_left_out() const { return left_out_; }
   /// Brings gap, rate and key of a closing to the end of the way that was searched last; not of a passage.
@@ -102,9 +109,17 @@ private:
   void list_acted(std::span<const std::pair<ConstraintKey, ContactMode>> modes);
   [[nodiscard]] bool acts(Index feature, Index outline, const ConstraintKey& key) const;
   [[nodiscard]] double most_approach() const;
-  void search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, StepClosing& first);
-  void search_contacts(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, StepClosing& first);
-  void search_depths(std::span<const NearOutlines> near, double approach, StepClosing& first);
+  [[nodiscard]] WayPaths::Form form() const {
+    return of_contacts_ ? WayPaths::Form::parabola : WayPaths::Form::chord;
+  }
+  // Which closings are kept.
+  enum class Keeps : std::uint8_t { first, all };
+  void begin(const StepWay& way);
+  void search(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, Keeps which);
+  void search_contacts(const StepWay& way, FunctionRef<bool(const SweptPair&)> closes, Keeps which);
+  void search_depths(std::span<const NearOutlines> near, double approach, Keeps which);
+  [[nodiscard]] double until(Keeps which) const;
+  void keep(const StepClosing& closing, Keeps which);
   [[nodiscard]] bool looks_at(const StepWay& way, const ContactPair& pair) const;
   [[nodiscard]] bool reaches(StepClosing& closing, double until);
   [[nodiscard]] bool counts(const StepClosing& closing, double rate);
@@ -120,6 +135,7 @@ private:
   OutlineDepth depths_;
   std::vector<Acted> acted_;
   std::vector<ContactPair> aside_, refuted_;
+  std::vector<StepClosing> found_;  // on the way at hand
   bool left_out_ = false;
 };
 

@@ -120,7 +120,8 @@ void StepConstraints::remember(const StepInput& in, double last_step) {
 
 ContactQuery StepConstraints::query(const StepInput& in, const StepTrial& trial) const {
   const LastingContacts* const lasting = lasting_.empty() ? nullptr : &lasting_;
-  return {in.start.view(), trial.at_start, ground_.start, &ground_.end, rules_.margin, lasting};
+  return {in.start.view(), trial.at_start, ground_.start, &ground_.end, rules_.margin, lasting, {},
+          in.bodies()};
 }
 
 /// Contacts that stuck in the last step have their static friction.

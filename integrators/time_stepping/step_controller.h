@@ -22,7 +22,7 @@ namespace carom {
 /// Chooses lengths of steps. Owns workspaces only.
 class CAROM_API StepController {
 public:
-  /// Makes a step as TimeStepper::step(), in one part or in several (PartedSteps).
+  /// Makes a step as TimeStepper::step(), in one phase or in several (PhasedSteps).
   using MakeStep =
       FunctionRef<void(State& state, Companion& companion, double step, double end_time, StepReport& report)>;
 

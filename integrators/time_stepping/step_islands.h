@@ -29,13 +29,12 @@ public:
   explicit StepIslands(const Assembly& assembly);
 
   /// Finds the islands where no constraint joins components: every batch is one.
-  /// \param batches ranges of components, in their order, that stay where and as they are as long as this is
-  /// used
+  /// \param batches ranges of components, in their order
   void find(std::span<const Range> batches);
   /// Finds the islands where some constraints join components: what they join leaves its batch. Every
-  /// component belongs to an island. Returns the order in which the constraints have to stand, those of an
-  /// island together, as they came.
-  /// \param joined components of each constraint, in the order of the first ones
+  /// component of the batches belongs to an island. Returns the order in which the constraints have to stand,
+  /// those of an island together, as they came. \param joined components of each constraint, in the order of
+  /// the first ones
   std::span<const Index> find(std::span<const Range> batches, std::span<const JoinedNodes> joined);
   /// Shares the constraints out, which stand in the order of their islands.
   void take(std::span<Constraint> constraints);
@@ -44,20 +43,21 @@ public:
   [[nodiscard]] std::span<const StepIsland> list() const { return islands_; }
 
 private:
-  void part(std::span<const Range> batches);
+  [[nodiscard]] bool takes_other(std::span<const Range> batches);
+  void part();
   void order_components();
-  void add_islands(std::span<const Range> batches, std::span<const JoinedNodes> joined);
-  [[nodiscard]] std::span<const Range> add_ranges(std::span<const Index> components,
-                                                  std::span<const Range> batches);
+  void add_islands(std::span<const JoinedNodes> joined);
+  [[nodiscard]] std::span<const Range> add_ranges(std::span<const Index> components, std::size_t batch);
 
   const Assembly* assembly_;
-  std::vector<Index> alone_, joined_;  // components in their order; island by island
+  std::vector<Range> batches_;
+  std::vector<Index> alone_, joined_;  // their components, in their order; island by island
   std::vector<Index> names_, next_;    // of the islands, by component; the next places in joined_, by name
   std::vector<Range> ranges_;          // of joined_
   std::vector<StepIsland> islands_;
   std::vector<Range> constraints_;  // of each island; empty where batches are the islands
   std::vector<JoinedNodes> known_;  // components that the constraints of the last find() joined
-  const Range* apart_ = nullptr;    // the batches that are the islands; null where constraints join some
+  bool apart_ = false;              // the batches are the islands: constraints join none
   IslandPartition partition_;
 };
 

@@ -62,9 +62,13 @@ struct StepParts {
            (!located.on() || constraints.detector().bodies_touch() || joints.any() ||
             options.iteration == Iteration::linearly_implicit);
   }
+  /// The components of a step, batch by batch.
+  [[nodiscard]] std::span<const Range> batches(const StepInput& in) const {
+    return in.part.scope == nullptr ? schedule.batches() : in.part.scope->batches();
+  }
   /// Tolerance of the iteration, for a part of a step less: velocities of short parts are as exact as those
   /// of long ones [m].
-  [[nodiscard]] double tolerance(const StepInput& in) const { return in.share * options.tolerance; }
+  [[nodiscard]] double tolerance(const StepInput& in) const { return in.part.share * options.tolerance; }
   /// The problem where bodies of an island answer together; null where nothing touches.
   [[nodiscard]] IslandProblem* problem() {
     return contacts.problems().empty() ? nullptr : &contacts.problems().front();

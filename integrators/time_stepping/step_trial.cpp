@@ -65,6 +65,12 @@ StepTrial::StepTrial(const Assembly& assembly, const StepNeeds& model)
   recorded.resize(assembly.blocks().size());
 }
 
+void StepTrial::stand_still(const State& start) {
+  end.q = start.q;
+  end.v = start.v;
+  end.z = start.z;
+}
+
 void StepTrial::begin(const StepInput& in) {
   end.time = in.end_time;
   loads_end.total.resize(end.v.size());

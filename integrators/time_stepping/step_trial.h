@@ -88,6 +88,9 @@ struct CAROM_API StepTrial {
   /// Forgets the step before. \param in the next step, of which loads are guessed \param history of the
   /// loads, is taken over
   void begin(const StepInput& in, LoadHistory& history);
+  /// Brings all bodies of the end to where they are at the start: those that a step does not advance stay
+  /// there.
+  void stand_still(const State& start);
   /// Gives the history back after a step that failed: nothing in it is pending any more.
   void give_back(const StepInput& in, LoadHistory& history);
 

@@ -16,7 +16,8 @@ namespace carom {
 namespace {
 
 /// Loads at the start, where the last step did not leave them: a function of the state.
-void evaluate_start(StepParts& parts, const State& state, Companion& companion) {
+void evaluate_start(StepParts& parts, const State& state, Companion& companion,
+                    std::span<const Range> batches) {
   PresentLoads& loads = companion.loads;
   if (loads.valid) companion.history.known = 0;  // of the other rule
   LoadsAtEnd at;
@@ -24,10 +25,12 @@ void evaluate_start(StepParts& parts, const State& state, Companion& companion) 
   at.total.resize(parts.trial.end.v.size());
   at.dissipative.resize(parts.trial.needs.dissipative ? parts.trial.end.v.size() : 0);
   at.external.resize(parts.trial.needs.external ? parts.trial.end.v.size() : 0);
-  for (Index component = 0; component < parts.assembly->components().size(); ++component) {
-    evaluate_positions(*parts.assembly, component, state.view(), parts.trial.at_end);
-    evaluate_loads(*parts.assembly, component, state.view(), parts.trial.at_end, at.by_cause());
-    at.finish(parts.assembly->components()[component].v);
+  for (const Range batch : batches) {
+    for (Index component = batch.begin; component < batch.end; ++component) {
+      evaluate_positions(*parts.assembly, component, state.view(), parts.trial.at_end);
+      evaluate_loads(*parts.assembly, component, state.view(), parts.trial.at_end, at.by_cause());
+      at.finish(parts.assembly->components()[component].v);
+    }
   }
   loads = {true, parts.rule.is_mean(), std::move(at.total), std::move(at.dissipative),
            std::move(at.external)};
@@ -57,17 +60,16 @@ TimeStepper::TimeStepper(const Assembly& assembly, const TimeStepping& options, 
   memory_.mean = parts_.rule.is_mean();
 }
 
-void TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report,
+bool TimeStepper::step(State& state, Companion& companion, double step, double end_time, StepReport& report,
                        const StepPart& part) {
   const bool known = companion.loads.valid && companion.loads.mean == parts_.rule.is_mean();
-  if (!known) evaluate_start(parts_, state, companion);
-  const StepInput in{*parts_.assembly,       state,      companion,   step, end_time,
-                     companion.history.step, part.share, part.repeats};
+  const StepInput in{*parts_.assembly, state, companion, step, end_time, companion.history.step, part};
+  if (!known) evaluate_start(parts_, state, companion, parts_.batches(in));
   try {
     parts_.flights.clear();
     flown_ = uncoupled_ ? uncoupled_->fly(in, state, companion, report) : Flight::not_free;
-    if (flown_ == Flight::made) return;
-    if (!in.repeats) struck_ = impacts_ != nullptr && strike(in);
+    if (flown_ == Flight::made) return true;
+    if (!in.part.repeats) struck_ = impacts_ != nullptr && strike(in);
   } catch (const RunError& error) {
     throw with_file(with_place(error, in), parts_.options);
   }
@@ -76,41 +78,52 @@ void TimeStepper::step(State& state, Companion& companion, double step, double e
   std::swap(companion.loads, loads_before_);
   companion.loads.valid = false;
   try {
-    evaluate_start(parts_, impacts_->start(), companion);
-    step_from(
-        {*parts_.assembly, impacts_->start(), companion, step, end_time, in.last_step, in.share, in.repeats},
-        state, companion, report);
+    evaluate_start(parts_, impacts_->start(), companion, parts_.batches(in));
+    const StepInput behind{*parts_.assembly, impacts_->start(), companion, step,
+                           end_time,         in.last_step,      part};
+    if (!step_from(behind, state, companion, report)) {
+      std::swap(companion.loads, loads_before_);
+      return false;
+    }
   } catch (...) {
     std::swap(companion.loads, loads_before_);
     throw;
   }
   companion.contact_statistics += impacts_->chain().statistics();
+  return true;
 }
 
 /// Impacts at the start of the step. True if there were any.
 bool TimeStepper::strike(const StepInput& in) {
   impacts_->chain().reset_statistics();
   prepare(in);
-  parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial);
+  parts_.constraints.find(in, parts_.batches(in), parts_.trial);
   return impacts_->resolve(in);
 }
 
-/// \param in the step, whose start is the state, or that after impacts
-void TimeStepper::step_from(const StepInput& in, State& state, Companion& companion, StepReport& report) {
+/// False if StepPart::stops has ended the step. \param in the step, whose start is the state, or that after
+/// impacts
+bool TimeStepper::step_from(const StepInput& in, State& state, Companion& companion, StepReport& report) {
+  if (in.part.scope != nullptr) parts_.trial.stand_still(in.start);
   if (memory_.guesses) {
     parts_.trial.begin(in, companion.history);
   } else {
     parts_.trial.begin(in);
   }
   try {
-    StepResult& result = uncoupled_ ? make_uncoupled_step(in) : make_step(in);
+    StepResult* const made = uncoupled_ ? &make_uncoupled_step(in) : make_step(in);
+    if (made == nullptr) {
+      give_up(in, companion);
+      return false;
+    }
     const double gain = balance_.unexplained_gain(in);
     if (gain > 0.0 && moves_far(in, parts_.trial.end)) parts_.errors(in, 0).fail_gain(gain);
     parts_.contacts.add_statistics(companion.contact_statistics);
     if (parts_.located.on()) parts_.located.add_statistics(companion.contact_statistics);
     memory_.sweeps = iteration_.sweeps();
-    commit(in, memory_, parts_.trial, result, state, companion, report);
+    commit(in, memory_, parts_.trial, *made, state, companion, report);
     capped_.write(report.capped_problem);
+    return true;
   } catch (const RunError& error) {
     give_up(in, companion);
     throw with_file(with_place(error, in), parts_.options);
@@ -127,21 +140,25 @@ void TimeStepper::give_up(const StepInput& in, Companion& companion) {
   parts_.located.forget_statistics();
 }
 
-StepResult& TimeStepper::make_step(const StepInput& in) {
+/// Null if StepPart::stops has ended the step.
+StepResult* TimeStepper::make_step(const StepInput& in) {
   prepare(in);
   // gaps <= 0, joint limits, dry friction, at t_j
-  parts_.constraints.find(in, parts_.schedule.batches(), parts_.trial, parts_.parting());
+  parts_.constraints.find(in, parts_.batches(in), parts_.trial, parts_.parting());
   const std::span<const StepIsland> islands = parts_.constraints.islands();
   if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
   projection_.lower_rebounds(in, islands);
   if (turning_ != nullptr) {
     turning_->begin(islands, in.step, parts_.located.on());
-    parts_.contacts.begin_passes(in.repeats);
+    turning_->predict(in, parts_.trial, islands);
+    parts_.contacts.begin_passes(in.part.repeats);
   }
   advance_all(in);
   passes_ = 1;
   while (turning_ != nullptr && turning_->turn(in, parts_.trial, islands, parts_.tolerance(in),
                                                balance_.result().tally.worst_residual)) {
+    if (passes_ == 1 && in.part.stops && in.part.stops(parts_.trial.end, balance_.result().contact_modes))
+      return nullptr;
     ++passes_;
     parts_.contacts.begin_next_pass();
     try {
@@ -153,7 +170,7 @@ StepResult& TimeStepper::make_step(const StepInput& in) {
       break;
     }
   }
-  return balance_.finish(in);  // works of what acted, records
+  return &balance_.finish(in);  // works of what acted, records
 }
 
 /// Of all islands, from the start of the step.
@@ -172,9 +189,12 @@ void TimeStepper::advance_all(const StepInput& in) {
 void TimeStepper::prepare(const StepInput& in) {
   prescribed_.demand_continuous(in.start.time, in.end_time);
   parts_.constraints.place_surfaces(in);
-  if (parts_.trial.needs.start_rotations) {
-    evaluate_positions(in.assembly, in.start.view(), parts_.trial.at_start);
-  }
+  if (!parts_.trial.needs.start_rotations) return;
+  if (in.part.scope == nullptr)
+    return evaluate_positions(in.assembly, in.start.view(), parts_.trial.at_start);
+  in.part.scope->for_components([&](Index component) {
+    evaluate_positions(in.assembly, component, in.start.view(), parts_.trial.at_start);
+  });
 }
 
 void TimeStepper::advance(const StepIsland& island, const StepInput& in) {

@@ -38,12 +38,6 @@
 
 namespace carom {
 
-/// A step that is part of a longer one.
-struct StepPart {
-  double share = 1.0;    ///< of the whole step: velocities of the part are as exact as those of the whole
-  bool repeats = false;  ///< the last step began at the same state and companion, but had another length
-};
-
 /// Advances states of one assembly. Owns workspaces only: what a step depends on is state, companion,
 /// options.
 class CAROM_API TimeStepper {
@@ -53,33 +47,43 @@ public:
   TimeStepper(const Assembly& assembly, const TimeStepping& options, const StopRequest* stop = nullptr);
 
   /// Makes one step of length `step` [s] whose end is called `end_time`. On success state and companion are
-  /// those at its end and `report` tells what happened; on an error none of the three has changed.
-  void step(State& state, Companion& companion, double step, double end_time, StepReport& report,
+  /// those at its end and `report` tells what happened; on an error none of the three has changed, nor where
+  /// StepPart::stops has ended it: then it is false.
+  bool step(State& state, Companion& companion, double step, double end_time, StepReport& report,
             const StepPart& part = {});
 
   /// Options.
   [[nodiscard]] const TimeStepping& options() const { return parts_.options; }
-  /// True if a step is to end where contacts close, so that its rest begins with the impact (parted_steps.h).
+  /// True if a step is to end where contacts close, so that its rest begins with the impact (set_phases.h).
   [[nodiscard]] bool ends_at_closings() const { return parts_.ends_at_closings(); }
   /// How the last step was made.
   struct LastStep {
-    int passes;                        ///< how often: again where contacts turn in it (contact_turning.h)
-    const State* after_impacts;        ///< its start behind impacts there; null if there were none
-    StepFlights* flights;              ///< of bodies that were hit within it
-    const StepProjection* projection;  ///< what TimeStepping::project_gaps has moved at its end
+    int passes;                           ///< how often: again where contacts turn in it (contact_turning.h)
+    const State& end;                     ///< of the last pass: of a step that was made not known any more
+    const State* after_impacts;           ///< its start behind impacts there; null if there were none
+    std::span<const StepIsland> islands;  ///< components that contact joined
+    StepFlights* flights;                 ///< of bodies that were hit within it
+    const StepProjection* projection;     ///< what TimeStepping::project_gaps has moved at its end
   };
   /// The last step. Valid until the next one.
   [[nodiscard]] LastStep last() {
-    return {passes_, struck_ ? &impacts_->start() : nullptr, &parts_.flights, &projection_};
+    return {passes_,
+            parts_.trial.end,
+            struck_ ? &impacts_->start() : nullptr,
+            parts_.constraints.islands(),
+            &parts_.flights,
+            &projection_};
   }
+  /// All components, batch by batch.
+  [[nodiscard]] std::span<const Range> batches() const { return parts_.schedule.batches(); }
   /// Names of contacts.
   [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
 
 private:
-  [[nodiscard]] StepResult& make_step(const StepInput& in);
+  [[nodiscard]] StepResult* make_step(const StepInput& in);
   [[nodiscard]] StepResult& make_uncoupled_step(const StepInput& in);
   void advance_loose(std::span<const LooseBodies> pieces, const StepInput& in);
-  void step_from(const StepInput& in, State& state, Companion& companion, StepReport& report);
+  [[nodiscard]] bool step_from(const StepInput& in, State& state, Companion& companion, StepReport& report);
   [[nodiscard]] bool strike(const StepInput& in);
   void give_up(const StepInput& in, Companion& companion);
   void prepare(const StepInput& in);

@@ -27,7 +27,8 @@ struct StepWay {
   const std::vector<double>& after_impacts;  ///< velocities behind impacts at the start
   StepFlights& flights;                      ///< of bodies that are hit on it
   std::span<const std::pair<ConstraintKey, ContactMode>>
-      acted;  ///< contacts of the step, as Companion::modes
+      acted;                 ///< contacts of the step, as Companion::modes
+  ChosenBodies bodies = {};  ///< whose way it is
 };
 
 /// Goes along the paths of a way. Keeps memory only.
@@ -59,6 +60,7 @@ private:
 
   StatePath path_, whole_;
   bool bends_ = false;          // bodies are hit on the way
+  ChosenBodies bodies_;         // of the way at hand
   std::vector<double> change_;  // of velocities on it
   std::vector<State> corners_;
   std::size_t count_ = 0, corner_ = 0;  // of corners, and that at which the path at hand ends

@@ -74,10 +74,12 @@ std::size_t move_as_one_component_does(double restitution, double friction, Impa
       largest = std::max(largest, (one - all).norm());
     }
   }
-  // The iteration ends at 1e-12 m, and impacts hand on what it left.
-  EXPECT_LT(largest, 1e-9) << restitution << ", friction " << friction;
+  // The iteration ends at 1e-12 m, and impacts hand on what it left. Where impacts are located a closing ends
+  // a phase of its set alone: what is not joined to it makes that step in one, with another error of h^3.
+  const double same = impacts == ImpactTimes::located ? 1e-8 : 1e-9;
+  EXPECT_LT(largest, same) << restitution << ", friction " << friction;
   const double rubbed = apart.energy().flow(EnergyFlow::joint_friction);
-  EXPECT_NEAR(rubbed, together.energy().flow(EnergyFlow::joint_friction), 1e-9) << restitution;
+  EXPECT_NEAR(rubbed, together.energy().flow(EnergyFlow::joint_friction), same) << restitution;
   EXPECT_GE(rubbed, friction) << restitution;  // a radian and more
   return joined;
 }
