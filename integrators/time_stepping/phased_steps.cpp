@@ -32,7 +32,7 @@ void PhasedSteps::step(State& state, Companion& companion, double step, double e
   report.steps_made = static_cast<int>((phases_.take_count() + bodies - 1) / bodies);
 }
 
-/// Makes the sets that have closings, until none comes near another one, and then the others. Returns the
+/// Makes the sets that have closings, and all others together, until none comes near another one. Returns the
 /// number of runs.
 std::size_t PhasedSteps::make_sets(const State& state, const Companion& companion, const WholeStep& whole) {
   const Box<2> nothing{Vec<2>::Constant(never), Vec<2>::Constant(-never)};
@@ -44,13 +44,9 @@ std::size_t PhasedSteps::make_sets(const State& state, const Companion& companio
   names_.clear();
   do {
     list_sets();
-    for (std::size_t k = made_; k < names_.size(); ++k) make(runs_[k], state, companion, whole);
+    for (std::size_t k = made_; k < names_.size() + rest(); ++k) make(runs_[k], state, companion, whole);
   } while (sets_.join(boxes_));
-  SetRun& rest = runs_[names_.size()];
-  if (rest.scope.bodies() == 0) return names_.size();
-  begin(rest, state, companion);
-  phases_.make_in_one(rest, whole);
-  return names_.size() + 1;
+  return names_.size() + rest();
 }
 
 /// Lists the sets with closings: first those that were made and have not been joined to others since.

@@ -6,8 +6,8 @@
 ///
 /// A step is tried in one phase first, of all bodies. Where something closes on its way, sets are formed over
 /// the boxes that bodies sweep on it (coupling_sets.h). The sets that have a closing start anew, each by
-/// itself; then all others, in one phase. Where a body, once it was hit, comes near one of another set, both
-/// are one, which starts again.
+/// itself; then all others together, in one phase unless its last pass finds what the first one missed. Where
+/// a body, once it was hit, comes near one of another set, both are one, which starts again.
 ///
 /// A set whose phases have no solution is advanced in one, without closings: these are counted in the same
 /// way. It fails where that has none either, or gains energy in impacts; and where jams or gains are to be
@@ -42,6 +42,7 @@ private:
   [[nodiscard]] std::size_t make_sets(const State& state, const Companion& companion, const WholeStep& whole);
   void list_sets();
   void make(SetRun& run, const State& state, const Companion& companion, const WholeStep& whole);
+  [[nodiscard]] std::size_t rest() const { return runs_[names_.size()].scope.bodies() > 0 ? 1 : 0; }
   void begin(SetRun& run, const State& state, const Companion& companion);
   [[nodiscard]] const StepClosing* first_of(const SetRun& run);
 

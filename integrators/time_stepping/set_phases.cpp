@@ -277,10 +277,4 @@ void SetPhases::make(SetRun& run, const WholeStep& whole, const StepClosing* fir
   }
 }
 
-void SetPhases::make_in_one(SetRun& run, const WholeStep& whole) {
-  begin(&run.scope, run.state, run.companion);
-  try_phase(whole, whole.end);
-  take_whole(run.state, run.companion, run.report);
-}
-
 }  // namespace carom

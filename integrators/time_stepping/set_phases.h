@@ -73,8 +73,6 @@ public:
   /// outlines of bodies sweep, are extended by their ways
   void make(SetRun& run, const WholeStep& whole, const StepClosing* first, Hits hits,
             std::vector<Box<2>>& boxes);
-  /// Advances bodies on whose way nothing closes to the end of the step.
-  void make_in_one(SetRun& run, const WholeStep& whole);
   /// True if the last make() ended for too many phases.
   [[nodiscard]] bool had_too_many() const { return phases_ > most_phases; }
   /// Bodies that were advanced, each as often as a step of it was made, since the last call.
