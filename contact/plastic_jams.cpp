@@ -29,6 +29,7 @@ bool is_without_measure(const ContactProblem& problem, std::span<const double> i
     for (std::size_t row = first; row < first + static_cast<std::size_t>(group.size); ++row) {
       usual = std::max(usual, std::abs(problem.vector()[row]) / trace);
     }
+    if (!(largest > without_measure * usual)) return false;  // it only grows
   }
   return largest > without_measure * usual;
 }
