@@ -166,7 +166,10 @@ void SetPhases::note_closings(const StepClosing* hit) {
     return accelerations_;
   };
   counts_->find(trial_.state, trial_.companion.modes, scope_);
-  if (hit != nullptr && !counts_->lists_parts_of(hit->key)) closings_->leave_aside(hit->pair.pair);
+  // A body that was moved out of something else may be open where it has been hit, and close again.
+  const bool may_have_opened = stepper_->options().project_gaps;
+  if (hit != nullptr && !may_have_opened && !counts_->lists_parts_of(hit->key))
+    closings_->leave_aside(hit->pair.pair);
   if (!stepper_->ends_at_closings()) return;
   counts_->note(trial_.state, hit == nullptr ? nullptr : &hit->key, accelerations, trial_.companion.closings);
 }
