@@ -222,11 +222,8 @@ void SetPhases::make_phase(const WholeStep& whole, const StepClosing* first) {
       end = whole.end;
       continue;
     }
-    const bool ends_there =
-        !is_late && (end == whole.end || found.gap <= found.shallow || is_followed(found));
-    if (ends_there) break;
-    const double next =
-        ends.next(is_late ? now.time : end - (found.gap - found.aim()) / found.rate, whole.end);
+    if (!is_late && (end == whole.end || found.is_reached() || is_followed(found))) break;
+    const double next = ends.next(is_late ? now.time : found.time_by_rate(end), whole.end);
     if (next == end) break;  // as near as times can be told apart
     end = next;
   }

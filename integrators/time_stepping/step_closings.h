@@ -51,6 +51,14 @@ struct StepClosing {
 
   /// The gap at which a step is to end [m].
   [[nodiscard]] double aim() const { return 0.5 * (shallow + deep); }
+  /// True where a way ends at the closing. A gap that grows does not close, however small it is: the last
+  /// impact may have opened it.
+  [[nodiscard]] bool is_reached() const { return gap <= shallow && rate < 0.0; }
+  /// The time of the gap at which a step is to end, by its rate where a way ends; infinite where it grows.
+  /// \param end of the way [s]
+  [[nodiscard]] double time_by_rate(double end) const {
+    return rate < 0.0 ? end - (gap - aim()) / rate : never;
+  }
   /// True of a dip that is none where a way ends there: the gap is open and grows.
   [[nodiscard]] bool is_refuted() const { return dips && gap > shallow && rate > 0.0; }
 };

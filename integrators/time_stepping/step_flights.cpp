@@ -6,70 +6,87 @@
 
 namespace carom {
 
+namespace {
+
+/// Displacement up to a share of the time in which velocities change evenly. \param whole displacement
+/// \param change of the velocity, times the length of the time
+double on_parabola(double share, double whole, double change) {
+  return share * whole - 0.5 * share * (1.0 - share) * change;
+}
+
+}  // namespace
+
 void StepFlights::add(const StepInput& in, const LocatedMotion& motion) {
   const BodySlot body = in.assembly.layout()->bodies()[motion.body()];
-  const MotionPhase* last = nullptr;
   for (const MotionPhase& phase : motion.phases()) {
-    if (!phase.is_impact()) {
-      last = &phase;
-    } else if (phase.begin > 0.0 && phase.begin < 1.0) {
-      corners_.push_back({phase.begin, body, phase.q});
-    }
+    if (phase.is_impact()) continue;
+    Flight flight{body, motion.body(), phase.begin, phase.end, in.step, phase.q, {}};
+    for (Index i = 0; i < body.v_size; ++i) flight.change[i] = phase.v1[i] - phase.v0[i];
+    flights_.push_back(flight);
   }
-  if (last == nullptr) return;
-  LastFlight flight{body, motion.body(), {}};
-  const double time = (last->end - last->begin) * in.step;
-  for (Index i = 0; i < body.v_size; ++i) flight.acceleration[i] = (last->v1[i] - last->v0[i]) / time;
-  last_.push_back(flight);
 }
 
 bool StepFlights::follow(const ContactPair& pair) const {
-  const auto is_of = [&](const LastFlight& flight) { return flight.number == pair.body; };
-  return pair.ground_shape != none && std::any_of(last_.begin(), last_.end(), is_of);
+  const auto is_of = [&](const Flight& flight) { return flight.number == pair.body; };
+  return pair.ground_shape != none && std::any_of(flights_.begin(), flights_.end(), is_of);
 }
 
-std::size_t StepFlights::write_way(const State& start, const State& end, std::vector<State>& out) {
+std::size_t StepFlights::write_way(const State& start, const State& end, const std::vector<double>& change,
+                                   std::vector<State>& out) {
   shares_.clear();
-  for (const Corner& corner : corners_) shares_.push_back(corner.share);
+  for (const Flight& flight : flights_) {
+    if (flight.begin > 0.0) shares_.push_back(flight.begin);
+  }
   std::sort(shares_.begin(), shares_.end());
   shares_.erase(std::unique(shares_.begin(), shares_.end()), shares_.end());
   const std::size_t count = shares_.size() + 2;
   if (out.size() < count) out.resize(count, start);
   out.front() = start;
   out[count - 1] = end;
+  const double step = end.time - start.time;
   for (std::size_t k = 0; k < shares_.size(); ++k) {
     State& at = out[k + 1];
     const double share = shares_[k];
     at = start;
-    at.time = start.time + share * (end.time - start.time);
-    for (std::size_t i = 0; i < at.q.size(); ++i) at.q[i] += share * (end.q[i] - start.q[i]);
-  }
-  // Of a body that is hit: from one of its corners to the next.
-  for (std::size_t first = 0; first < corners_.size();) {
-    const BodySlot& body = corners_[first].body;
-    std::size_t last = first;
-    while (last < corners_.size() && corners_[last].body.q == body.q) ++last;
-    std::size_t next = first;
-    for (std::size_t k = 0; k < shares_.size(); ++k) {
-      while (next < last && corners_[next].share < shares_[k]) ++next;
-      const double from = next == first ? 0.0 : corners_[next - 1].share;
-      const double to = next == last ? 1.0 : corners_[next].share;
-      const double* const a = next == first ? start.q.data() + body.q : corners_[next - 1].q.data();
-      const double* const b = next == last ? end.q.data() + body.q : corners_[next].q.data();
-      const double part = (shares_[k] - from) / (to - from);
-      for (Index i = 0; i < body.q_size; ++i) out[k + 1].q[body.q + i] = a[i] + part * (b[i] - a[i]);
+    at.time = start.time + share * step;
+    for (std::size_t i = 0; i < at.q.size(); ++i)
+      at.q[i] += on_parabola(share, end.q[i] - start.q[i], step * change[i]);
+    for (std::size_t f = 0; f < flights_.size(); ++f) {
+      const Flight& flight = flights_[f];
+      if (!(share >= flight.begin && share < flight.end)) continue;
+      const double length = flight.end - flight.begin;
+      const double* const q = is_last(f) ? end.q.data() + flight.body.q : flights_[f + 1].q.data();
+      for (Index i = 0; i < flight.body.q_size; ++i) {
+        at.q[flight.body.q + i] =
+            flight.q[i] + on_parabola((share - flight.begin) / length, q[i] - flight.q[i],
+                                      length * step * flight.change[i]);
+      }
     }
-    first = last;
   }
   return count;
+}
+
+void StepFlights::write_changes(double from, double to, const std::vector<double>& change,
+                                std::vector<double>& out) const {
+  out.resize(change.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = (to - from) * change[i];
+  const double middle = 0.5 * (from + to);
+  for (const Flight& flight : flights_) {
+    if (!(middle >= flight.begin && middle < flight.end)) continue;
+    const double part = (to - from) / (flight.end - flight.begin);
+    for (Index i = 0; i < flight.body.v_size; ++i) out[flight.body.v + i] = part * flight.change[i];
+  }
 }
 
 void StepFlights::write_accelerations(const std::vector<double>& v, const State& end, double step,
                                       std::vector<double>& out) const {
   out.resize(v.size());
   for (std::size_t i = 0; i < v.size(); ++i) out[i] = (end.v[i] - v[i]) / step;
-  for (const LastFlight& flight : last_) {
-    std::copy_n(flight.acceleration.begin(), flight.body.v_size, out.begin() + flight.body.v);
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
+    const Flight& flight = flights_[f];
+    const double time = (flight.end - flight.begin) * flight.step;
+    for (Index i = 0; is_last(f) && i < flight.body.v_size; ++i)
+      out[flight.body.v + i] = flight.change[i] / time;
   }
 }
 

@@ -2,7 +2,7 @@
 
 /// \file
 /// The flights of bodies that shapes on ground hit within a step (LocatedMotion), as far as the whole step is
-/// looked at afterwards: where the ways of bodies have corners, and how loads accelerate them at its end.
+/// looked at afterwards: where bodies fly, and how loads accelerate them.
 
 #include <carom/contact/detection/contact_pair.h>
 #include <carom/core/export.h>
@@ -21,20 +21,24 @@ namespace carom {
 class CAROM_API StepFlights {
 public:
   /// Forgets all: a step begins.
-  void clear() {
-    corners_.clear();
-    last_.clear();
-  }
+  void clear() { flights_.clear(); }
   /// Adds the motion of a body.
   void add(const StepInput& in, const LocatedMotion& motion);
   /// True if no body was hit.
-  [[nodiscard]] bool empty() const { return corners_.empty(); }
+  [[nodiscard]] bool empty() const { return flights_.empty(); }
   /// True of a pair of a shape on ground and a body that is added: its closings are followed by the motion of
   /// the body.
   [[nodiscard]] bool follow(const ContactPair& pair) const;
-  /// Writes the corners of the way of all bodies, its ends included: between two of them all coordinates are
-  /// taken to change evenly. Of the plane. Returns how many there are; `out` may have more.
-  std::size_t write_way(const State& start, const State& end, std::vector<State>& out);
+  /// Writes the corners of the way of all bodies, its ends included. Between two corners velocities change
+  /// evenly: those of bodies that were hit over each flight, of others over the step. Of the plane. Returns
+  /// how many there are; `out` may have more. \param change of velocities over the step, of bodies that were
+  /// not hit
+  std::size_t write_way(const State& start, const State& end, const std::vector<double>& change,
+                        std::vector<State>& out);
+  /// Writes by how much velocities change between two corners. \param change as of write_way() \param from,to
+  /// shares of the step
+  void write_changes(double from, double to, const std::vector<double>& change,
+                     std::vector<double>& out) const;
   /// Mean accelerations over a step between two states, impacts left out: of bodies that were hit those of
   /// their last flight. \param v velocities at the start, behind impacts there \param out over all velocities
   /// [m/s^2, rad/s^2]
@@ -43,22 +47,20 @@ public:
 
 private:
   static constexpr std::size_t most_coordinates = 7, most_velocities = 6;
-  // A body is hit.
-  struct Corner {
-    double share;  // of the step
+  struct Flight {
     BodySlot body;
-    std::array<double, most_coordinates> q;  // where it is then
+    Index number;                                // of the body, in the order of assembly
+    double begin, end;                           // shares of the step
+    double step;                                 // its length [s]
+    std::array<double, most_coordinates> q;      // at its begin
+    std::array<double, most_velocities> change;  // of the velocities over it
   };
-  // The last flight of a body.
-  struct LastFlight {
-    BodySlot body;
-    Index number;  // of the body, in the order of assembly
-    std::array<double, most_velocities> acceleration;
-  };
+  [[nodiscard]] bool is_last(std::size_t flight) const {
+    return flight + 1 == flights_.size() || flights_[flight + 1].number != flights_[flight].number;
+  }
 
-  std::vector<Corner> corners_;  // body after body, ascending
-  std::vector<LastFlight> last_;
-  std::vector<double> shares_;  // of corners, each once
+  std::vector<Flight> flights_;  // body after body, ascending
+  std::vector<double> shares_;   // where they begin within the step, each once
 };
 
 }  // namespace carom

@@ -53,15 +53,16 @@ public:
   /// The path at hand.
   [[nodiscard]] const StatePath& path() const { return path_; }
   /// A path from where the way begins to where it ends, with the velocities there.
-  [[nodiscard]] const StatePath& whole() const { return bends_ ? whole_ : path_; }
+  [[nodiscard]] const StatePath& whole() const { return bends() ? whole_ : path_; }
 
 private:
   void set_whole(const StepWay& way);
+  [[nodiscard]] bool bends() const { return !flights_->empty(); }
 
   StatePath path_, whole_;
-  bool bends_ = false;          // bodies are hit on the way
-  ChosenBodies bodies_;         // of the way at hand
-  std::vector<double> change_;  // of velocities on it
+  const StepFlights* flights_ = nullptr;  // of the way at hand
+  ChosenBodies bodies_;                   // of the way at hand
+  std::vector<double> change_, between_;  // of velocities on it; on a path of it
   std::vector<State> corners_;
   std::size_t count_ = 0, corner_ = 0;  // of corners, and that at which the path at hand ends
 };

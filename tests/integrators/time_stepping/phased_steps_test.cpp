@@ -139,4 +139,93 @@ TEST(PhasedSteps, StandForOneStepInCounts) {
   EXPECT_TRUE(ledger_closes(simulation.energy()));
 }
 
+/// How far two discs are apart [m].
+double gap_of(const Simulation& simulation, BodyId a, BodyId b, double radii) {
+  return (simulation.state().position(a) - simulation.state().position(b)).norm() - radii;
+}
+
+// The way of the disc that the floor does not hit was taken for straight: a quarter of g h off, so that a
+// pair which had parted more slowly seemed to overlap when the other one was hit, and was not looked for.
+TEST(PhasedSteps, APairThatPartsSlowlyClosesAgainInTheStep) {
+  constexpr double radius = 0.1, capture_speed = 0.01;
+  for (const double h : {1e-2, 1e-3}) {
+    for (const double restitution : {0.1, 0.5, 1.0}) {
+      for (const double gap : {0.0, 1e-9, 1e-6, 1e-5}) {
+        for (const double parting : {-0.02, 0.0, 1e-3, 5e-3, 2e-2}) {
+          System system;
+          system.add(Gravity{{0.0, -g}});
+          system.set_default_law({.friction = 0.0, .normal_restitution = restitution});
+          system.add(HalfPlane{.normal = {0.0, 1.0}});
+          const BodyId lower = add_disc(system, 1.0, radius, {0.0, radius + 0.5 * h}, {0.0, -1.0});
+          const BodyId upper =
+              add_disc(system, 1.0, radius, {0.0, 3.0 * radius + 0.5 * h + gap}, {0.0, -1.0 + parting});
+          Simulation simulation(system, located(h));
+          simulation.step();
+          // A slower closing that opens again comes as deep at most.
+          const double allowed = 1e-9 + 0.25 * capture_speed * h;
+          EXPECT_GT(gap_of(simulation, lower, upper, 2.0 * radius), -allowed)
+              << h << ", e " << restitution << ", gap " << gap << ", " << parting;
+        }
+      }
+    }
+  }
+}
+
+// Bounces that accumulate within a step, up to some ten, and the pair lasts behind them.
+TEST(PhasedSteps, BouncesUnderAStiffSpringEndInContact) {
+  constexpr double radius = 0.1, h = 4e-3;
+  carom_test::Random random(11);
+  for (int i = 0; i < 3000; ++i) {
+    const double stiffness = random.uniform(500.0, 5000.0), apart = random.uniform(1e-4, 2e-3);
+    System system;
+    system.set_default_law({.friction = 0.0, .normal_restitution = random.uniform(0.3, 0.6)});
+    const BodyId a = add_disc(system, 1.0, radius, {0.0, 0.0});
+    const BodyId b =
+        add_disc(system, random.uniform(0.3, 1.0), radius, {2.0 * radius + apart, 0.0}, {-0.5, 0.0});
+    system.add(SpringDamper{.from = a, .to = b, .stiffness = stiffness});
+    Simulation simulation(system, located(h));
+    for (int step = 0; step < 4; ++step) {
+      simulation.step();
+      EXPECT_GT(gap_of(simulation, a, b, 2.0 * radius), -2e-5) << i << ", step " << step;
+    }
+    EXPECT_TRUE(ledger_closes(simulation.energy())) << i;
+  }
+}
+
+// A dip within the step is found whatever is hit elsewhere meanwhile.
+TEST(PhasedSteps, PairsGrazeBesideAFarImpactAsAlone) {
+  constexpr double h = 0.02;
+  int hits = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    std::vector<Vec<2>> ends;
+    std::vector<std::int64_t> impacts;
+    for (const bool beside : {false, true}) {
+      carom_test::Random random(seed);
+      System system;
+      system.add(Gravity{{0.0, -g}});
+      system.set_default_law({.friction = 0.3, .normal_restitution = 0.7});
+      system.add(HalfPlane{.normal = {0.0, 1.0}});
+      const auto box_at = [&](const Vec<2>& place) {
+        return add_box(system, random.uniform(0.5, 1.0), random.uniform(0.1, 0.2), random.uniform(0.1, 0.2),
+                       place, random.uniform(-3.0, 3.0),
+                       {random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5)}, random.uniform(-6.0, 6.0));
+      };
+      const BodyId a = box_at({16.0, 1.0});
+      const double angle = random.uniform(-3.0, 3.0), apart = random.uniform(0.17, 0.23);
+      const BodyId b = box_at({16.0 + apart * std::cos(angle), 1.0 + apart * std::sin(angle)});
+      system.add(SpringDamper{.from = a, .to = b, .stiffness = 700.0, .free_length = 0.2});
+      if (beside) add_disc(system, 1.0, 0.1, {0.0, 0.11 + random.uniform(0.0, 0.02)}, {0.0, -2.0});
+      Simulation simulation(system, located(h));
+      simulation.step();
+      ends.push_back(simulation.state().position(a));
+      ends.push_back(simulation.state().position(b));
+      impacts.push_back(simulation.statistics().impacts - (beside ? 1 : 0));
+    }
+    EXPECT_EQ(impacts[0], impacts[1]) << seed;
+    EXPECT_LT((ends[0] - ends[2]).norm() + (ends[1] - ends[3]).norm(), 1e-9) << seed;
+    hits += static_cast<int>(impacts[0]);
+  }
+  EXPECT_GT(hits, 500);
+}
+
 }  // namespace

@@ -312,6 +312,24 @@ TEST(StepClosings, OfPassagesAreDeeperThanWhatOverlapsAtTheStart) {
   EXPECT_LE(closing.time, 1.5 * allowed / 20.0 + found_to);
 }
 
+// A rebound leaves a gap that is rounding, and grows: such a one was taken for the next closing.
+TEST(StepClosing, IsReachedWhereTheGapFalls) {
+  StepClosing closing;
+  closing.deep = -1e-12;
+  for (const double gap : {-1e-12, -1e-13, 0.0, 1e-13, 1e-3}) {
+    for (const double rate : {-2.0, -1e-9, 0.0, 1e-9, 2.0}) {
+      closing.gap = gap;
+      closing.rate = rate;
+      EXPECT_EQ(closing.is_reached(), gap <= 0.0 && rate < 0.0) << gap << ", " << rate;
+      if (rate < 0.0) {
+        EXPECT_NEAR(closing.time_by_rate(1.0), 1.0 + (gap + 0.5e-12) / -rate, 1e-9 * std::abs(gap / rate));
+      } else {
+        EXPECT_EQ(closing.time_by_rate(1.0), never);
+      }
+    }
+  }
+}
+
 // Contacts that are given up are not passed through all the same.
 TEST(StepClosings, OfContactsThatAreNotLookedForArePassages) {
   Way way(through_a_wall(-10.0), 1.0);
