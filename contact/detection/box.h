@@ -4,6 +4,7 @@
 /// Boxes along the axes, which bound shapes or the motion of shapes.
 
 #include <carom/core/ids.h>
+#include <carom/core/numerics/never.h>
 #include <carom/core/space.h>
 
 #include <compare>
@@ -17,6 +18,8 @@ struct Box {
   Vec<D> min = Vec<D>::Zero();  ///< least coordinates
   Vec<D> max = Vec<D>::Zero();  ///< largest coordinates
 
+  /// A box around nothing, to be extended.
+  [[nodiscard]] static Box none() { return {Vec<D>::Constant(never), Vec<D>::Constant(-never)}; }
   /// Takes another box in.
   void extend(const Box& other) {
     min = min.cwiseMin(other.min);

@@ -7,11 +7,7 @@ ContactLook::ContactLook(const Assembly& assembly, const Detector& detector)
 
 void ContactLook::find(const StateView& state, double margin, ConstraintSet& out, const GroundPlaces* after,
                        const LastingContacts* lasting, const ChosenBodies& bodies) {
-  if (bodies.are_all()) evaluate_positions(*assembly_, state, evaluation_);
-  for (const Range components : bodies.components) {
-    for (Index component = components.begin; component < components.end; ++component)
-      evaluate_positions(*assembly_, component, state, evaluation_);
-  }
+  evaluate_positions(*assembly_, bodies, state, evaluation_);
   detector_->place(state.time, places_);
   out.clear();
   detector_->find_all({state, evaluation_, places_, after, margin, lasting, {}, bodies}, search_, out);

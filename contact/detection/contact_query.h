@@ -3,28 +3,14 @@
 /// \file
 /// One question to detection.
 
+#include <carom/contact/detection/chosen_bodies.h>
 #include <carom/contact/detection/ground_shapes.h>
 #include <carom/contact/detection/lasting_contacts.h>
 #include <carom/core/evaluation.h>
 #include <carom/core/function_ref.h>
-#include <carom/core/ids.h>
 #include <carom/core/state.h>
 
-#include <cstdint>
-#include <span>
-
 namespace carom {
-
-/// Some bodies of a model, those of some components; or all. A view.
-struct ChosenBodies {
-  std::span<const Range> components = {};        ///< ascending
-  std::span<const std::uint8_t> is_chosen = {};  ///< by body; empty: all are chosen
-
-  /// True if all bodies are chosen.
-  [[nodiscard]] bool are_all() const { return is_chosen.empty(); }
-  /// True of a body that is chosen.
-  [[nodiscard]] bool has(Index body) const { return is_chosen.empty() || is_chosen[body] != 0; }
-};
 
 /// A state, and which contacts of it are asked for. It is read during the call that it is given to.
 struct ContactQuery {

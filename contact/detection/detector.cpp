@@ -80,9 +80,7 @@ void Detector::remember(std::span<const std::pair<ConstraintKey, ContactMode>> c
 }
 
 void Detector::find_all(const ContactQuery& query, BodyContactSearch& memory, ConstraintSet& out) const {
-  const Range all{0, static_cast<Index>(assembly_->components().size())};
-  for (const Range components : query.bodies.are_all() ? std::span(&all, 1) : query.bodies.components)
-    find(components, query, out);
+  query.bodies.for_components(*assembly_, [&](Range components) { find(components, query, out); });
   find_between_bodies(query, memory, out);
 }
 

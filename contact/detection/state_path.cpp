@@ -35,13 +35,8 @@ void StatePath::set(const State& from, const State& to, const double* change, co
       end_.v[v] = begin_.v[v] + by;
     }
   }
-  const Range all{0, static_cast<Index>(assembly_->components().size())};
-  for (const Range components : bodies.are_all() ? std::span(&all, 1) : bodies.components) {
-    for (Index component = components.begin; component < components.end; ++component) {
-      evaluate_positions(*assembly_, component, begin_.view(), at_begin_);
-      evaluate_positions(*assembly_, component, end_.view(), at_end_);
-    }
-  }
+  evaluate_positions(*assembly_, bodies, begin_.view(), at_begin_);
+  evaluate_positions(*assembly_, bodies, end_.view(), at_end_);
   detector_->place(begin_.time, ground_[0]);
   detector_->place(end_.time, ground_[1]);
   watches_ = 0;

@@ -4,7 +4,7 @@
 /// The path between two states: how all bodies of a model move in a span of time at whose ends they are
 /// known.
 
-#include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/chosen_bodies.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/detection/first_closing.h>
 #include <carom/core/assembly.h>

@@ -152,7 +152,7 @@ Box<2> SweptPairs::box_in(const StatePath& path, Index outline, Index shape) con
   const BodySlot slot = outlines.slots()[of.body];
   double fastest = 0.0;
   std::array<const GroundMotion*, 2> motions{};
-  Box<2> box{Vec<2>::Constant(never), Vec<2>::Constant(-never)};
+  Box<2> box = Box<2>::none();
   double reach = 0.0;
   for (std::size_t end = 0; end < ends_.size(); ++end) {
     const PathSample at = end == 0 ? path.begin() : path.end();

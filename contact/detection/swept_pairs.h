@@ -8,8 +8,8 @@
 #include <carom/contact/detection/body_pairs.h>
 #include <carom/contact/detection/box.h>
 #include <carom/contact/detection/broad_phase.h>
+#include <carom/contact/detection/chosen_bodies.h>
 #include <carom/contact/detection/contact_pair.h>
-#include <carom/contact/detection/contact_query.h>
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/detection/first_closing.h>
 #include <carom/contact/detection/state_path.h>

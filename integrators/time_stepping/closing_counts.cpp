@@ -32,9 +32,8 @@ bool ClosingCounts::is_given_up(const ConstraintKey& key) const {
   return known != closed_.end() && known->others >= most_impacts_;
 }
 
-void ClosingCounts::find(const State& end, Modes acted, const StepScope* scope) {
-  look_.find(end.view(), rounding_, at_end_, nullptr, nullptr,
-             scope == nullptr ? ChosenBodies{} : scope->chosen());
+void ClosingCounts::find(const State& end, Modes acted, const ChosenBodies& bodies) {
+  look_.find(end.view(), rounding_, at_end_, nullptr, nullptr, bodies);
   at_end_.remove_if([&](const Constraint& contact) {
     const bool closes = contact.normal_velocity(end.v.data()) < 0.0 || contact.gap < -rounding_;
     return !closes || acts(contact, acted) || is_given_up(contact.key);

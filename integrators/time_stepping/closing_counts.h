@@ -15,7 +15,6 @@
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/capture_rule.h>
 #include <carom/integrators/time_stepping/gap_rounding.h>
-#include <carom/integrators/time_stepping/step_scope.h>
 
 #include <array>
 #include <cstddef>
@@ -43,8 +42,8 @@ public:
   /// True of a contact that has closed often enough: nobody is to look for it any more.
   [[nodiscard]] bool is_given_up(const ConstraintKey& key) const;
   /// Lists the contacts that close at the end of a phase, of those that did not act up to there.
-  /// \param scope bodies whose end it is; null: all
-  void find(const State& end, Modes acted, const StepScope* scope);
+  /// \param bodies whose end it is
+  void find(const State& end, Modes acted, const ChosenBodies& bodies);
   /// True if any of these is of the same bodies, or of the same body and shape on ground, as a contact.
   [[nodiscard]] bool lists_parts_of(const ConstraintKey& contact) const;
   /// Says which of them rebound although they are slow, and which do not although they are fast. \param end

@@ -23,7 +23,7 @@ void copy(const std::vector<T>& from, Range places, std::vector<T>& to) {
 
 /// Takes what is known by body: places, velocities, loads.
 void take_numbers(const Assembly& assembly, const SetRun& run, State& state, Companion& companion) {
-  run.scope.for_components([&](Index component) {
+  run.scope.for_each([&](Index component) {
     const Component& of = assembly.components()[component];
     copy(run.state.q, of.q, state.q);
     copy(run.state.v, of.v, state.v);

@@ -1,6 +1,5 @@
 // Problem: a step in which nothing passes through anything, or bodies are hit when they meet.
 
-#include <carom/core/numerics/never.h>
 #include <carom/core/run_error.h>
 #include <carom/integrators/time_stepping/phased_steps.h>
 
@@ -35,8 +34,7 @@ void PhasedSteps::step(State& state, Companion& companion, double step, double e
 /// Makes the sets that have closings, and all others together, until none comes near another one. Returns the
 /// number of runs.
 std::size_t PhasedSteps::make_sets(const State& state, const Companion& companion, const WholeStep& whole) {
-  const Box<2> nothing{Vec<2>::Constant(never), Vec<2>::Constant(-never)};
-  boxes_.assign(stepper_->detector().outlines().of_bodies().list().size(), nothing);
+  boxes_.assign(stepper_->detector().outlines().of_bodies().list().size(), Box<2>::none());
   phases_.add_boxes_of_whole(boxes_);
   sets_.begin();
   sets_.join(stepper_->last().islands);
@@ -92,7 +90,7 @@ void PhasedSteps::begin(SetRun& run, const State& state, const Companion& compan
   run.companion.statistics = {};
   run.companion.contact_statistics = {};
   StoredEnergies stored;
-  run.scope.for_components([&](Index component) {
+  run.scope.for_each([&](Index component) {
     evaluate_positions(*assembly_, component, state.view(), evaluation_);
     add_stored_energies(*assembly_, component, state.view(), evaluation_, stored);
   });
@@ -109,11 +107,10 @@ const StepClosing* PhasedSteps::first_of(const SetRun& run) {
 }
 
 void PhasedSteps::make(SetRun& run, const State& state, const Companion& companion, const WholeStep& whole) {
-  const Box<2> nothing{Vec<2>::Constant(never), Vec<2>::Constant(-never)};
   const std::vector<BodyOutline>& outlines = stepper_->detector().outlines().of_bodies().list();
   const auto start_anew = [&] {
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      if (run.scope.has(outlines[i].body)) boxes_[i] = nothing;
+      if (run.scope.has(outlines[i].body)) boxes_[i] = Box<2>::none();
     }
     begin(run, state, companion);
   };

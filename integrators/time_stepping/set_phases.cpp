@@ -83,7 +83,7 @@ bool SetPhases::try_phase(const WholeStep& whole, double end, Stops stops) {
   const bool is_made = stepper_->step(trial_.state, trial_.companion, length, end, trial_.report,
                                       {length / whole.step, repeats, scope_, stops});
   repeats_ = true;
-  made_ += std::int64_t{stepper_->last().passes} * (scope_ == nullptr ? bodies_ : scope_->bodies());
+  made_ += std::int64_t{stepper_->last().passes} * count();
   return is_made;
 }
 
@@ -113,7 +113,7 @@ void SetPhases::begin(const StepScope* scope, const State& state, const Companio
   repeats_ = false;
   phases_ = 0;
   closings_->begin_step();
-  closings_->begin_part();
+  closings_->begin_phase();
   if (counts_) counts_->begin_step();
 }
 
@@ -128,7 +128,7 @@ void SetPhases::take_whole(State& state, Companion& companion, StepReport& repor
 /// Contacts that may end phases of the bodies at hand.
 int SetPhases::most_hits() const {
   constexpr int least = 1;
-  const auto bodies = static_cast<int>(scope_ == nullptr ? bodies_ : scope_->bodies());
+  const auto bodies = static_cast<int>(count());
   return bodies < hits_of_bodies ? std::max(least, hits_of_bodies / (bodies * bodies)) : least;
 }
 
@@ -147,12 +147,7 @@ StepWay SetPhases::way_to(const State& end, const ContactModes& modes) {
     came_ = end;
     last.projection->take_back(came_);
   }
-  return {*start_,
-          moves_out ? came_ : end,
-          after_impacts().v,
-          *last.flights,
-          modes,
-          scope_ == nullptr ? ChosenBodies{} : scope_->chosen()};
+  return {*start_, moves_out ? came_ : end, after_impacts().v, *last.flights, modes, bodies_of(scope_)};
 }
 
 /// Takes note of the contacts that close at the end of a phase. \param hit at which it ends; null where it
@@ -165,7 +160,7 @@ void SetPhases::note_closings(const StepClosing* hit) {
                                                   trial_.state.time - start_->time, accelerations_);
     return accelerations_;
   };
-  counts_->find(trial_.state, trial_.companion.modes, scope_);
+  counts_->find(trial_.state, trial_.companion.modes, bodies_of(scope_));
   // A body that was moved out of something else may be open where it has been hit, and close again.
   const bool may_have_opened = stepper_->options().project_gaps;
   if (hit != nullptr && !may_have_opened && !counts_->lists_parts_of(hit->key))
@@ -187,7 +182,7 @@ bool SetPhases::is_followed(const StepClosing& closing) const {
 void SetPhases::make_phase(const WholeStep& whole, const StepClosing* first) {
   constexpr int most_tries = 1000;
   const double begin = start_->time;
-  closings_->begin_part();
+  closings_->begin_phase();
   const bool searches = counts_ && hits_ == Hits::end_phases && phases_ < most_hits();
   EndBracket ends{.open = begin};
   double end = whole.end;

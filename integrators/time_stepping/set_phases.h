@@ -86,6 +86,7 @@ private:
   void begin(const StepScope* scope, const State& state, const Companion& companion);
   [[nodiscard]] StepWay way_to(const State& end, const ContactModes& modes);
   [[nodiscard]] StepWay way() { return way_to(trial_.state, trial_.companion.modes); }
+  [[nodiscard]] Index count() const { return scope_ == nullptr ? bodies_ : scope_->bodies(); }
   [[nodiscard]] int most_hits() const;
   [[nodiscard]] const State& after_impacts() const;
   [[nodiscard]] bool is_followed(const StepClosing& closing) const;

@@ -11,8 +11,8 @@
 /// of the step, if it closes faster than the capture speed; a slower one comes at most as deep as a quarter
 /// of what that speed makes in the step.
 ///
-/// The way of a step is that between its ends on which velocities change evenly; where a body is hit on it, a
-/// chord up to the impact and another one from there. It leads to the time at which a step is to end, and the
+/// The way of a step is that between its ends on which velocities change evenly; of a body that is hit on it,
+/// those of its flights. It leads to the time at which a step is to end, and the
 /// step that ends there says what is true: so an error of the way costs a step, unless it hides a closing.
 
 #include <carom/contact/detection/detector.h>
@@ -86,9 +86,9 @@ public:
   /// Leaves the closings of a pair aside in the rest of the step: it is none of those that the detector
   /// finds.
   void leave_aside(const ContactPair& pair) { aside_.push_back(pair); }
-  /// A part of the step begins: nothing is refuted any more.
-  void begin_part() { refuted_.clear(); }
-  /// Leaves the closings of a pair aside in the part at hand: a shorter one has shown that there is none.
+  /// A phase of the step begins: nothing is refuted any more.
+  void begin_phase() { refuted_.clear(); }
+  /// Leaves the closings of a pair aside in the phase at hand: a shorter one has shown that there is none.
   void refute(const ContactPair& pair) { refuted_.push_back(pair); }
   /// The first closing on a way. \param closes whether a contact is looked for that closes; of others nothing
   /// but their passages is

@@ -33,9 +33,7 @@ struct StepInput {
   StepPart part = {};          ///< of a longer step
 
   /// The bodies that the step advances.
-  [[nodiscard]] ChosenBodies bodies() const {
-    return part.scope == nullptr ? ChosenBodies{} : part.scope->chosen();
-  }
+  [[nodiscard]] ChosenBodies bodies() const { return bodies_of(part.scope); }
 };
 
 }  // namespace carom

@@ -3,7 +3,7 @@
 /// \file
 /// The components that a step advances.
 
-#include <carom/contact/detection/contact_query.h>
+#include <carom/contact/detection/chosen_bodies.h>
 #include <carom/core/assembly.h>
 #include <carom/core/export.h>
 #include <carom/core/ids.h>
@@ -34,7 +34,7 @@ public:
   [[nodiscard]] Index bodies() const { return bodies_; }
   /// Calls f(component) for each component, in their order.
   template <class F>
-  void for_components(F&& f) const {
+  void for_each(F&& f) const {
     for (const Range batch : batches_) {
       for (Index component = batch.begin; component < batch.end; ++component) f(component);
     }
@@ -45,5 +45,10 @@ private:
   std::vector<std::uint8_t> has_;  // by body
   Index components_ = 0, bodies_ = 0;
 };
+
+/// The bodies of a scope; all, where it is null.
+[[nodiscard]] inline ChosenBodies bodies_of(const StepScope* scope) {
+  return scope == nullptr ? ChosenBodies{} : scope->chosen();
+}
 
 }  // namespace carom

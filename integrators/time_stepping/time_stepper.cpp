@@ -189,12 +189,8 @@ void TimeStepper::advance_all(const StepInput& in) {
 void TimeStepper::prepare(const StepInput& in) {
   prescribed_.demand_continuous(in.start.time, in.end_time);
   parts_.constraints.place_surfaces(in);
-  if (!parts_.trial.needs.start_rotations) return;
-  if (in.part.scope == nullptr)
-    return evaluate_positions(in.assembly, in.start.view(), parts_.trial.at_start);
-  in.part.scope->for_components([&](Index component) {
-    evaluate_positions(in.assembly, component, in.start.view(), parts_.trial.at_start);
-  });
+  if (parts_.trial.needs.start_rotations)
+    evaluate_positions(in.assembly, in.bodies(), in.start.view(), parts_.trial.at_start);
 }
 
 void TimeStepper::advance(const StepIsland& island, const StepInput& in) {

@@ -2,7 +2,7 @@
 
 /// \file
 /// The way of a step as paths that are searched one after the other: that between its ends on which
-/// velocities change evenly; where a body is hit on it, chords between impacts.
+/// velocities change evenly; where a body is hit on it, one from each impact to the next.
 
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/detection/state_path.h>

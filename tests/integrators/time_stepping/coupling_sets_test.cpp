@@ -103,7 +103,7 @@ TEST(StepScope, HasItsBodiesBatchByBatch) {
   EXPECT_EQ(scope.batches()[2].begin, 5U);
   EXPECT_EQ(scope.batches()[2].end, 6U);
   std::vector<Index> seen;
-  scope.for_components([&](Index component) { seen.push_back(component); });
+  scope.for_each([&](Index component) { seen.push_back(component); });
   EXPECT_EQ(seen, chosen);
   for (Index body = 0; body < 6; ++body) {
     const bool is_chosen = std::find(chosen.begin(), chosen.end(), body) != chosen.end();

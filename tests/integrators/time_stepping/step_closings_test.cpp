@@ -136,13 +136,13 @@ TEST_P(StepClosingsOnFloors, AreLeftAsideForARestOfAStep) {
   EXPECT_EQ(way.first().time, closing.time);
 }
 
-TEST_P(StepClosingsOnFloors, AreRefutedForOnePartAlone) {
+TEST_P(StepClosingsOnFloors, AreRefutedForOnePhaseAlone) {
   Way way(over_floor(GetParam(), 0.3, 1.0), 0.25, {0.0, -g});
   const StepClosing closing = way.first();
   ASSERT_LT(closing.time, never);
   way.closings.refute(closing.pair.pair);
   EXPECT_TRUE(way.first().time == never || way.first().is_passage);
-  way.closings.begin_part();
+  way.closings.begin_phase();
   EXPECT_EQ(way.first().time, closing.time);
 }
 
