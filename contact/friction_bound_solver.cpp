@@ -94,6 +94,13 @@ void allow(const ContactProblem& problem, const std::vector<double>& null, std::
 
 }  // namespace
 
+FrictionBounds* FrictionBoundProblem::bounds_of(const Constraint& contact) const {
+  for (FrictionBounds* const some : bounds) {
+    if (some->depends_on_joint_force(contact)) return some;
+  }
+  return nullptr;
+}
+
 /// Changes of the answer `found_` that the law leaves free and that move nothing, orthonormal.
 void FrictionBoundSolver::find_null_space(const ContactProblem& problem) {
   if (problem.is_factored()) return find_null_space(problem.dense());
@@ -129,6 +136,11 @@ void FrictionBoundSolver::find_null_space(const ContactProblem& problem) {
   }
 }
 
+void FrictionBoundSolver::take_multipliers(const FrictionBoundProblem& problem) {
+  for (std::size_t i = 0; i < problem.bounds.size(); ++i)
+    problem.bounds[i]->take(problem.multipliers(i), problem.duration, problem.size);
+}
+
 void FrictionBoundSolver::take_forces(const FrictionBoundProblem& problem, bool least) {
   IslandProblem& island = problem.problem;
   null_.clear();
@@ -136,20 +148,19 @@ void FrictionBoundSolver::take_forces(const FrictionBoundProblem& problem, bool 
     found_.assign(island.impulses().begin(), island.impulses().end());
     find_null_space(island.problem());
   }
-  if (null_.empty()) {
-    problem.bounds.take(problem.multipliers(), problem.duration, problem.size);
-    return;
-  }
+  if (null_.empty()) return take_multipliers(problem);
   least_ = found_;
   remove_parts(null_, least_);
   allow(island.problem(), null_, least_);
   island.set_impulses(least_);
-  problem.bounds.take(problem.multipliers(), problem.duration, problem.size);
+  take_multipliers(problem);
   island.set_impulses(found_);
 }
 
 bool FrictionBoundSolver::solve(const FrictionBoundProblem& problem, SolverChain& chain) {
-  if (problem.bounds.empty()) return problem.problem.solve(chain).usable();
+  if (std::all_of(problem.bounds.begin(), problem.bounds.end(),
+                  [](const FrictionBounds* some) { return some->empty(); }))
+    return problem.problem.solve(chain).usable();
   // Of answers that are not unique one may follow another for ever.
   return converge(problem, chain, patience, false) ||
          (problem.problem.report().usable() &&
@@ -166,9 +177,10 @@ bool FrictionBoundSolver::converge(const FrictionBoundProblem& problem, SolverCh
     iteration.begin();
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
       Constraint& contact = problem.contacts[c];
-      if (!problem.bounds.depends_on_joint_force(contact)) continue;
+      FrictionBounds* const bounds = problem.bounds_of(contact);
+      if (bounds == nullptr) continue;
       const double before = contact.of_joint.friction_bound;
-      change = std::max(change, problem.bounds.update(contact, problem.at));
+      change = std::max(change, bounds->update(contact, problem.at));
       iteration.add(before, contact.of_joint.friction_bound);
       problem.problem.update_bound(c);
     }
@@ -176,7 +188,7 @@ bool FrictionBoundSolver::converge(const FrictionBoundProblem& problem, SolverCh
     if (!iteration.accelerates()) continue;
     std::size_t bound = 0;
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
-      if (!problem.bounds.depends_on_joint_force(problem.contacts[c])) continue;
+      if (problem.bounds_of(problem.contacts[c]) == nullptr) continue;
       problem.contacts[c].of_joint.friction_bound = iteration.guess(bound++);
       problem.problem.update_bound(c);
     }

@@ -11,6 +11,7 @@
 #include <carom/core/joint_kind.h>
 #include <carom/core/numerics/rank_revealing_qr.h>
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
@@ -18,15 +19,18 @@
 namespace carom {
 
 /// One problem of contacts with friction in joints. All members must outlive the calls.
-struct FrictionBoundProblem {
+struct CAROM_API FrictionBoundProblem {
   IslandProblem& problem;
-  std::span<Constraint> contacts;  ///< contacts of the problem
-  FrictionBounds& bounds;          ///< of friction in the joints
-  JointView at;                    ///< where forces of joints are looked at
-  double duration = 1.0;           ///< as for FrictionBounds::take() [s]
-  double size = 0.0;               ///< of loads, as for FrictionBounds::take()
-  /// Multipliers of all rows of the joints under the impulses that the problem has.
-  std::function<const double*()> multipliers;
+  std::span<Constraint> contacts;           ///< contacts of the problem
+  std::span<FrictionBounds* const> bounds;  ///< of friction in the joints, each of joints of its own
+  JointView at;                             ///< where forces of joints are looked at
+  double duration = 1.0;                    ///< as for FrictionBounds::take() [s]
+  double size = 0.0;                        ///< of loads, as for FrictionBounds::take()
+  /// Multipliers of all rows of the joints of one of the bounds, under the impulses that the problem has.
+  std::function<const double*(std::size_t bounds)> multipliers;
+
+  /// The bounds that hold for a contact; null if no force of a joint bounds its friction.
+  [[nodiscard]] FrictionBounds* bounds_of(const Constraint& contact) const;
 };
 
 /// Solves problems of contacts with friction in joints. Keeps its memory.
@@ -40,6 +44,7 @@ public:
 
 private:
   void find_null_space(const ContactProblem& problem);
+  static void take_multipliers(const FrictionBoundProblem& problem);
   void take_forces(const FrictionBoundProblem& problem, bool least);
   [[nodiscard]] bool converge(const FrictionBoundProblem& problem, SolverChain& chain, int repetitions,
                               bool least);

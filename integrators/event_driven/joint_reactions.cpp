@@ -129,10 +129,11 @@ bool JointReactions::solve(IslandProblem& problem, std::span<Constraint> contact
                            SolverChain& chain) {
   assert(is_at(at));
   // Little is captured, so that nothing is allocated.
-  const auto multipliers = [this, &problem] { return impulses(problem).data(); };
+  const auto multipliers = [this, &problem](std::size_t) { return impulses(problem).data(); };
+  FrictionBounds* const bounds = &joints_->bounds;
   return memory_->friction_bound.solve({.problem = problem,
                                         .contacts = contacts,
-                                        .bounds = joints_->bounds,
+                                        .bounds = {&bounds, 1},
                                         .at = at.joint_view(),
                                         .duration = 0.0,
                                         .multipliers = multipliers},

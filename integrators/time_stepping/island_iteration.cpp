@@ -9,7 +9,10 @@
 namespace carom {
 
 IslandIteration::IslandIteration(StepParts& parts, const StopRequest* stop)
-    : parts_(&parts), stop_(stop), method_(*parts.assembly) {
+    : parts_(&parts),
+      stop_(stop),
+      method_(*parts.assembly),
+      joints_(*parts.assembly, parts.constraints.detector().joints(), parts.joints) {
   sweeps_.assign(parts.assembly->components().size(), 1);
   method_.use(parts.options.iteration);
 }
@@ -32,8 +35,6 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
   using Verdict = FixedPointJudge::Verdict;
   begin(island, in);
   const Index front = island.components.front();
-  JointStage* const joints = joints_of(island);
-  const bool joined = parts_->joined.takes(island);
   const std::vector<int>& before = parts_->trial.history.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[front] : 1;
   for (;;) {
@@ -44,7 +45,7 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
       parts_->errors(in, front).fail_contact(*failed);
     }
     const SweepChange change = made.change;
-    const bool ahead = joints == nullptr ? !method_.is_newton() && !joined : joints->looks_ahead();
+    const bool ahead = joints_.any() ? joints_.looks_ahead() : !method_.is_newton();
     Verdict verdict =
         ahead ? judge.judge_ahead(change.change, change.size) : judge.judge(change.change, change.size);
     // Newton's first is that from t_j: small or not, it says nothing of the guess.
@@ -59,7 +60,7 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
       for (const Index component : island.components) {
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
       }
-      const bool moved = (joined || joints != nullptr) && converge_joints(island, in);
+      const bool moved = joints_.any() && converge_joints(island, in);
       demand_motion(island, in, *parts_);
       return moved ? LoadsKnown::total : made.known;
     }
@@ -76,10 +77,9 @@ void IslandIteration::improve(const StepIsland& island, const StepInput& in, con
 
 /// Bodies that are hit within the step, as far as the iterate says. True if there are more than were known.
 bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in) {
-  if (!parts_->located.on() || method_.is_newton() || parts_->joined.takes(island)) return false;
+  if (!parts_->located.on() || method_.is_newton() || joints_.any()) return false;
   bool any = false;
   for (const Index component : island.components) {
-    if (parts_->joints.of(component) != nullptr) continue;
     any = parts_->located.take_up(in, {component, component + 1}, island.constraints,
                                   parts_->constraints.places(true), parts_->trial) ||
           any;
@@ -105,16 +105,8 @@ bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in, 
 
 /// Contact problems, and a first guess at the loads.
 void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
-  const Index front = island.components.front();
-  JointStage* const joints = joints_of(island);
-  const bool joined = parts_->joined.takes(island);
-  if (joined &&
-      std::any_of(island.constraints.begin(), island.constraints.end(), [&](const Constraint& constraint) {
-        return parts_->constraints.detector().joints().depends_on_joint_force(constraint);
-      })) {
-    parts_->errors(in, front).fail_joined(island.constraints);
-  }
-  const bool together = method_.is_newton() || joints != nullptr || joined;
+  joints_.bind(island);
+  const bool together = method_.is_newton() || joints_.any();
   parts_->contacts.state_problems(in, island, together, parts_->trial);
   parts_->located.clear();
   parts_->trial.jumps.on = false;
@@ -125,10 +117,9 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
     std::copy(in.start.z.begin() + z.begin, in.start.z.begin() + z.end,
               parts_->trial.end.z.begin() + z.begin);
   }
-  JointContacts contacts = contacts_of(island);
   method_.start(island.components);
   // Mechanisms, and what they touch, keep to the step: it ends where they are hit.
-  if (parts_->located.on() && joints == nullptr && !joined && !method_.is_newton()) {
+  if (parts_->located.on() && !together) {
     for (const Index component : island.components) {
       parts_->located.expect(in, component, island.constraints, parts_->constraints.places(false),
                              parts_->trial);
@@ -139,10 +130,7 @@ void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   } else {
     for (const Index component : island.components) parts_->schedule.guess(parts_->stages(in, component));
   }
-  if (joined) parts_->joined.start(in, island, *contacts.problem, parts_->trial);
-  if (joints != nullptr) {
-    joints->start(in, parts_->rule, method_.current(), contacts, parts_->trial);
-  }
+  if (joints_.any()) joints_.start(in, parts_->rule, method_.current(), contact_of(island), parts_->trial);
   if (!method_.is_newton()) return;
   demand(method_.newton().start(in, parts_->rule, newton_island(island), parts_->trial), island, in);
 }
@@ -175,38 +163,24 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
   constexpr double improved = 0.8;
   constexpr double open = 1e5;  // roundings
   const Index front = island.components.front();
-  JointStage* const joints = joints_of(island);  // null: of several components
-  const auto violation = [&] {
-    return joints != nullptr ? joints->violation(in, parts_->trial)
-                             : parts_->joined.violation(in, island, parts_->trial);
-  };
-  const auto is_near_singular = [&] { return joints != nullptr && joints->rows().is_near_singular(); };
-  double left = violation();
-  if (!is_near_singular() && !(left > 1.0)) return false;
-  JointContacts contacts = contacts_of(island);
+  double left = joints_.violation(in, parts_->trial);
+  if (!joints_.is_near_singular() && !(left > 1.0)) return false;
   for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
-    if (joints != nullptr) {
-      sweep_joints(island, in, *joints, contacts);
-    } else {
-      sweep_joined(island, in);
-    }
+    sweep_joints(island, in);
     if (method_.is_newton() && method_.newton().follows_rows()) {  // it asks for the loads where bodies are
       follow(in, front);
       parts_->schedule.evaluate(parts_->stages(in, front), LoadsKnown::total, false);
     }
-    const double now = violation();
+    const double now = joints_.violation(in, parts_->trial);
     if (!(now < improved * left)) break;
     left = now;
   }
-  if (joints != nullptr && left > open) demand_closed(*joints, in, front, *parts_);
-  if (is_near_singular()) joints->settle_velocities(parts_->trial);
+  for (JointStage* const joints : joints_.jointed()) {
+    if (left > open) demand_closed(*joints, in, *parts_);
+    if (joints->rows().is_near_singular()) joints->settle_velocities(parts_->trial);
+  }
   for (const Index component : island.components) follow(in, component);
   return true;
-}
-
-/// The joints of an island of one component; null if there are none, or several components.
-JointStage* IslandIteration::joints_of(const StepIsland& island) const {
-  return island.components.size() == 1 ? parts_->joints.of(island.components.front()) : nullptr;
 }
 
 /// Nothing comes between the bodies of a block and their loads.
@@ -235,9 +209,8 @@ void IslandIteration::fail_contraction(const StepIsland& island, const StepInput
                         {island.components, parts_->joints, parts_->contacts.problems()});
 }
 
-JointContacts IslandIteration::contacts_of(const StepIsland& island) {
-  return {parts_->constraints.detector(), island.constraints, parts_->problem(), parts_->contacts.chain(),
-          method_.is_newton()};
+IslandContact IslandIteration::contact_of(const StepIsland& island) {
+  return {island.constraints, parts_->problem(), parts_->contacts.chain(), method_.is_newton()};
 }
 
 }  // namespace carom

@@ -7,6 +7,7 @@
 #include <carom/core/export.h>
 #include <carom/core/numerics/fixed_point.h>
 #include <carom/integrators/run/stop_request.h>
+#include <carom/integrators/time_stepping/island_joints.h>
 #include <carom/integrators/time_stepping/load_iteration.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_parts.h>
@@ -43,7 +44,7 @@ private:
     bool converged_one_early = false;      // of two the first was enough
   };
   [[nodiscard]] LoadsKnown iterate(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
-  [[nodiscard]] JointContacts contacts_of(const StepIsland& island);
+  [[nodiscard]] IslandContact contact_of(const StepIsland& island);
   void begin(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool find_impacts(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool loads_jump(const StepIsland& island, const StepInput& in, bool local);
@@ -52,12 +53,9 @@ private:
   [[nodiscard]] SweepsMade sweep_streamed(const SweepStages& stages, int expected, FixedPointJudge& judge);
   [[nodiscard]] SweepsMade sweep_staged(const StepIsland& island, const StepInput& in, int expected,
                                         const FixedPointJudge& judge);
-  void sweep_joints(const StepIsland& island, const StepInput& in, JointStage& joints,
-                    JointContacts& contacts);
+  void sweep_joints(const StepIsland& island, const StepInput& in);
   void follow(const StepInput& in, Index component);
-  void sweep_joined(const StepIsland& island, const StepInput& in);
   [[nodiscard]] bool converge_joints(const StepIsland& island, const StepInput& in);
-  [[nodiscard]] JointStage* joints_of(const StepIsland& island) const;
   [[nodiscard]] bool is_streamed(const StepIsland& island) const;
   [[nodiscard]] NewtonIsland newton_island(const StepIsland& island);
   void improve(const StepIsland& island, const StepInput& in, const FixedPointJudge& judge);
@@ -68,6 +66,7 @@ private:
   StepParts* parts_;
   const StopRequest* stop_;  // may be null
   LoadIteration method_;
+  IslandJoints joints_;      // of the island at hand
   std::vector<int> sweeps_;  // by component
   int local_sweeps_ = 0;
   int jump_updates_ = 0;  // of the island at hand

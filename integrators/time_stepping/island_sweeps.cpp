@@ -42,18 +42,13 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
                                                           int expected, const FixedPointJudge& judge) {
   const Index front = island.components.front();
   const bool newton = method_.is_newton(), alone = island.components.size() == 1;
-  JointStage* const joints = joints_of(island);
-  const bool joined = parts_->joined.takes(island);
   SweepsMade made;
   made.known = alone && judge.sweeps() + 1 >= expected ? LoadsKnown::by_cause : LoadsKnown::total;
-  JointContacts contacts = contacts_of(island);
   if (newton && !method_.newton().follows_rows()) {
     demand(method_.newton().step(in, parts_->rule, newton_island(island), parts_->trial), island, in);
   }
-  if (joined) {
-    sweep_joined(island, in);
-  } else if (joints != nullptr) {
-    sweep_joints(island, in, *joints, contacts);
+  if (joints_.any()) {
+    sweep_joints(island, in);
   } else {
     const IslandProblem* const failed =
         newton ? nullptr : parts_->contacts.solve(in, parts_->rule, parts_->trial);
@@ -67,29 +62,19 @@ IslandIteration::SweepsMade IslandIteration::sweep_staged(const StepIsland& isla
     made.change.take(newton ? method_.newton().change(in, component, parts_->trial)
                             : parts_->schedule.change(parts_->stages(in, component)));
   }
-  if (joined) parts_->joined.take_change(in, island, parts_->trial, made.change);
-  if (joints == nullptr) return made;
-  made.change.take(joints->change(in, parts_->trial));
-  made.change.size *= joints->rows().roundoff_growth();
+  joints_.take_change(in, parts_->trial, made.change);
   return made;
 }
 
-void IslandIteration::sweep_joints(const StepIsland& island, const StepInput& in, JointStage& joints,
-                                   JointContacts& contacts) {
+void IslandIteration::sweep_joints(const StepIsland& island, const StepInput& in) {
   if (method_.is_newton() && method_.newton().follows_rows()) {
-    return demand(method_.newton().sweep_untouched(in, parts_->rule, joints.iterate(), parts_->trial), island,
-                  in);
+    return demand(
+        method_.newton().sweep_untouched(in, parts_->rule, joints_.alone()->iterate(), parts_->trial), island,
+        in);
   }
-  if (joints.sweep(in, parts_->rule, contacts, parts_->trial)) return;
-  parts_->errors(in, island.components.front()).fail_contact(*contacts.problem);
-}
-
-void IslandIteration::sweep_joined(const StepIsland& island, const StepInput& in) {
-  IslandProblem& problem = *parts_->problem();
-  if (method_.is_newton()) parts_->joined.respond(problem);
-  if (parts_->joined.sweep(in, parts_->rule, island, problem, parts_->contacts.chain(), parts_->trial))
-    return;
-  parts_->errors(in, island.components.front()).fail_contact(problem);
+  const IslandContact contact = contact_of(island);
+  if (joints_.sweep(in, parts_->rule, contact, parts_->trial)) return;
+  parts_->errors(in, island.components.front()).fail_contact(*contact.problem);
 }
 
 /// Quantities of the iterate that its loads need: rotations, internal variables, the state halfway where an

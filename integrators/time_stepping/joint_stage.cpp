@@ -1,6 +1,5 @@
 // Problem: end a step on the joints, with velocities that they allow, in contact too.
 
-#include <carom/core/dynamics/body_response.h>
 #include <carom/integrators/time_stepping/far_turn.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 
@@ -76,25 +75,20 @@ JointStage::JointStage(const Assembly& assembly, Index component, Index first_ro
   std::sort(breaks_.begin(), breaks_.end());
 }
 
-void JointStage::start(const StepInput& in, const StepRule& rule, Iteration iteration,
-                       JointContacts& contacts, StepTrial& trial) {
-  trial.expect_impulses();
+void JointStage::start(const StepInput& in, const StepRule& rule, Iteration iteration, JointsTouch touch,
+                       StepTrial& trial) {
   joints_.clear(joints_.arrays->dv_contact);
-  struck_ = std::any_of(contacts.constraints.begin(), contacts.constraints.end(),
-                        [](const Constraint& constraint) { return constraint.normals > 0; });
+  touch_ = touch;
+  const bool untouched = touch == JointsTouch::nothing;
   // Mean rows give velocities by their mean with those before: behind a jump they would alternate for ever.
-  const bool mean = rule.is_mean() && contacts.problem == nullptr && !may_jump(breaks_, in);
-  const bool untouched = contacts.problem == nullptr;
+  const bool mean = rule.is_mean() && untouched && !may_jump(breaks_, in);
   guessed_ = iteration == Iteration::fixed_point && untouched && mean == rule.is_mean() &&
              untouched_.start(in, rule, trial);
   if (!guessed_) begin_at_start(in, mean, trial);
   if (iteration == Iteration::linearly_implicit && untouched) untouched_.guess_impulses(in);
-  if (!struck_ && !answer_.rows().depends_on_time()) return;
+  if (!is_struck() && !answer_.rows().depends_on_time()) return;
   answer_.place(in, trial);
-  if (!struck_) return;
-  answer_.rows().factor();
-  JointResponse response(answer_.rows());
-  contacts.problem->respond(response);
+  if (is_struck()) answer_.rows().factor();
 }
 
 /// The first iterate without reactions. \param mean whether these are to act along mean rows
@@ -112,78 +106,29 @@ void JointStage::begin_at_start(const StepInput& in, bool mean, StepTrial& trial
   joints_.displace(arrays.scratch, trial.end);
 }
 
-bool JointStage::sweep(const StepInput& in, const StepRule& rule, JointContacts& contacts, StepTrial& trial) {
-  if (guessed_) {
-    untouched_.sweep(in, rule, trial);
-    return true;
-  }
-  joints_.react(in, rule, trial);
-  if (contacts.problem != nullptr) {
-    if (!struck_) joints_.rows.at_midpoint().factor();
-    if (!react_to_contact(in, contacts, trial)) return false;
-    joints_.correct_impulses(in, trial);  // for what contact changed
-  }
-  joints_.move_onto_joints(in, rule, trial);
-  trial.account.swept = true;
-  return true;
-}
-
-void JointStage::start_joined(const StepInput& in, StepTrial& trial) {
-  joints_.clear(joints_.arrays->dv_contact);
-  struck_ = true;
-  guessed_ = false;
-  begin_at_start(in, false, trial);
-  answer_.place(in, trial);
-  answer_.rows().factor();
-}
-
 void JointStage::approach(const StepInput& in, const StepRule& rule, StepTrial& trial, double* free) {
   joints_.react(in, rule, trial);
+  if (touch_ == JointsTouch::nothing) return;
   const Range v = joints_.v();
   for (Index i = v.begin; i < v.end; ++i) free[i] = trial.free[i] + joints_.arrays->dv_joints[i];
-  allow_answered(free);
+  if (is_struck()) {
+    allow_answered(free);
+  } else {
+    joints_.rows.at_midpoint().factor();
+  }
 }
 
 void JointStage::leave(const StepInput& in, const StepRule& rule, const double* change, StepTrial& trial) {
-  const Range v = joints_.v();
-  std::copy(change + v.begin, change + v.end, joints_.arrays->dv_contact.begin() + v.begin);
-  joints_.correct_impulses(in, trial);
+  if (change != nullptr) {
+    const Range v = joints_.v();
+    std::copy(change + v.begin, change + v.end, joints_.arrays->dv_contact.begin() + v.begin);
+    joints_.correct_impulses(in, trial);  // for what contact changed
+  }
   joints_.move_onto_joints(in, rule, trial);
 }
 
-bool JointStage::react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial) {
-  JointArrays& arrays = *joints_.arrays;
-  IslandProblem& problem = *contacts.problem;
-  if (struck_) {
-    // The guess of Newton's method couples bodies by more than their joints.
-    if (contacts.stale_matrix) {
-      JointResponse response(answer_.rows());
-      problem.respond(response);
-    }
-    for (std::size_t c = 0; c < contacts.constraints.size(); ++c) problem.update_bound(c);
-  } else {
-    update_friction_rows(contacts, trial);
-    JointResponse response(joints_.rows.at_midpoint());
-    problem.respond(response);
-  }
-  const Range v = joints_.v();
-  for (Index i = v.begin; i < v.end; ++i) arrays.scratch[i] = trial.free[i] + arrays.dv_joints[i];
-  if (struck_) allow_answered(arrays.scratch.data());
-  problem.set_free_velocity(arrays.scratch.data());
-  const FrictionBoundProblem bounded{.problem = problem,
-                                     .contacts = contacts.constraints,
-                                     .bounds = bounds_,
-                                     .at = {trial.midpoint.view(), trial.at_midpoint.rotation.data()},
-                                     .duration = in.step,
-                                     .multipliers = [this, &problem] { return multipliers(&problem); }};
-  if (!bound_solver_.solve(bounded, contacts.chain)) return false;
-  joints_.clear(arrays.dv_contact);
-  problem.map().add_velocities(arrays.dv_contact.data());
-  return true;
-}
-
 const double* JointStage::velocities_of_contact(StepTrial& trial) {
-  if (!struck_) return trial.end.v.data();
+  if (!is_struck()) return trial.end.v.data();
   const Range v = joints_.v();
   std::vector<double>& allowed = joints_.arrays->allowed;
   std::copy(trial.end.v.begin() + v.begin, trial.end.v.begin() + v.end, allowed.begin() + v.begin);
@@ -191,29 +136,25 @@ const double* JointStage::velocities_of_contact(StepTrial& trial) {
   return allowed.data();
 }
 
-/// Friction in joints alone acts halfway, against the rates that coordinates have at the end.
-void JointStage::update_friction_rows(JointContacts& contacts, StepTrial& trial) {
+void JointStage::turn_friction(std::span<Constraint> friction, const JointRows& rows, const double* free,
+                               StepTrial& trial) {
   JointArrays& arrays = *joints_.arrays;
   const Range v = joints_.v();
-  for (Index i = v.begin; i < v.end; ++i) {
-    arrays.scratch[i] = trial.free[i] + arrays.dv_joints[i] + arrays.dv_contact[i];
-  }
+  for (Index i = v.begin; i < v.end; ++i) arrays.scratch[i] = free[i] + arrays.dv_contact[i];
   const JointView halfway{trial.midpoint.view(), trial.at_midpoint.rotation.data()};
   const JointView end{trial.end.view(), trial.at_end.rotation.data()};
-  for (std::size_t c = 0; c < contacts.constraints.size(); ++c) {
-    Constraint& friction = contacts.constraints[c];
-    contacts.detector.joints().update_friction(end, friction);
-    const double at_end = friction.times(0, arrays.scratch.data());
-    contacts.detector.joints().update_friction(halfway, friction);
-    friction.surface_velocity_after[0] = friction.times(0, arrays.scratch.data()) - at_end;
-    contacts.problem->update_bound(c);
+  for (Constraint& of_joint : friction) {
+    rows.update_friction(end, of_joint);
+    const double at_end = of_joint.times(0, arrays.scratch.data());
+    rows.update_friction(halfway, of_joint);
+    of_joint.surface_velocity_after[0] = of_joint.times(0, arrays.scratch.data()) - at_end;
   }
 }
 
 const double* JointStage::multipliers(const IslandProblem* problem) {
   total_ = joints_.impulse;
   if (problem == nullptr) return total_.data();
-  JointConstraints& answering = struck_ ? answer_.rows() : joints_.rows.at_midpoint();
+  JointConstraints& answering = this->answering(touch_);
   std::vector<double>& loads = joints_.arrays->scratch;
   joints_.clear(loads);
   problem->map().add_loads(1.0, loads.data());

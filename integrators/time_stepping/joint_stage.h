@@ -33,10 +33,10 @@
 /// above is then v_{j+1} itself.
 ///
 /// Friction in joints is a row of the contact problem with |P| <= h times its bound. Without contacts its
-/// force acts halfway, against the rate that the coordinate has at the end.
+/// force acts halfway, against the rate that the coordinate has at the end. Sweeps of islands, with what
+/// contact does to them, are in island_joints.h.
 
-#include <carom/contact/detection/detector.h>
-#include <carom/contact/friction_bound_solver.h>
+#include <carom/contact/detection/joint_rows.h>
 #include <carom/contact/friction_bounds.h>
 #include <carom/contact/island_problem.h>
 #include <carom/core/assembly.h>
@@ -54,13 +54,11 @@
 
 namespace carom {
 
-/// Friction of the island that is bound by forces of joints, and how its problem is solved.
-struct JointContacts {
-  const Detector& detector;
-  std::span<Constraint> constraints;  ///< of the island
-  IslandProblem* problem = nullptr;   ///< null where nothing touches or rubs
-  SolverChain& chain;
-  bool stale_matrix = false;  ///< W of the problem is that of another stage, and is to be made anew
+/// What touches the bodies of an island in a step.
+enum class JointsTouch : std::uint8_t {
+  nothing,   ///< neither
+  friction,  ///< friction in joints alone
+  contact    ///< bodies, ground or stops
 };
 
 /// Where a step has gone astray: how far which body would be moved back, and the longest way of one.
@@ -77,19 +75,22 @@ public:
   JointStage(const Assembly& assembly, Index component, Index first_row, JointArrays& arrays);
 
   /// The first guess: by the steps before where they say anything and the iteration has a use for it, else no
-  /// reactions, and the positions that the present velocities lead to.
-  void start(const StepInput& in, const StepRule& rule, Iteration iteration, JointContacts& contacts,
+  /// reactions, and the positions that the present velocities lead to. \param touch of its island
+  void start(const StepInput& in, const StepRule& rule, Iteration iteration, JointsTouch touch,
              StepTrial& trial);
-  /// One sweep. False if the contact problem is not solved.
-  [[nodiscard]] bool sweep(const StepInput& in, const StepRule& rule, JointContacts& contacts,
-                           StepTrial& trial);
-  /// The first guess in an island of several components (joined_mechanisms.h), which answers as a whole.
-  void start_joined(const StepInput& in, StepTrial& trial);
-  /// First half of a sweep in an island of several components: reactions without contact. \param free out:
-  /// velocities that contact sees, if it did nothing, over all velocities
+  /// One sweep from a guess by the steps before: of a component that nothing touches.
+  void sweep_guessed(const StepInput& in, const StepRule& rule, StepTrial& trial) {
+    untouched_.sweep(in, rule, trial);
+  }
+  /// First half of a sweep: reactions without contact. \param free out: velocities that contact sees, if it
+  /// did nothing, over all velocities
   void approach(const StepInput& in, const StepRule& rule, StepTrial& trial, double* free);
-  /// Second half of a sweep in an island of several components. \param change of velocities by contact and
-  /// what joints answer to it, over all velocities
+  /// Brings friction in joints, of a component that nothing else touches, to the iterate: it acts halfway,
+  /// against the rates that coordinates have at the end. \param free velocities of approach()
+  void turn_friction(std::span<Constraint> friction, const JointRows& rows, const double* free,
+                     StepTrial& trial);
+  /// Second half of a sweep. \param change of velocities by contact and what joints answer to it, over all
+  /// velocities; null: nothing touches
   void leave(const StepInput& in, const StepRule& rule, const double* change, StepTrial& trial);
   /// Change that the sweep has made, or that another would make.
   [[nodiscard]] SweepChange change(const StepInput& in, const StepTrial& trial);
@@ -109,6 +110,12 @@ public:
   double project_velocities(StepTrial& trial);
   /// Answer to contact.
   [[nodiscard]] JointAnswer& answer() { return answer_; }
+  /// Rows of the joints that answer what touches them.
+  [[nodiscard]] JointConstraints& answering(JointsTouch touch) {
+    return touch == JointsTouch::contact ? answer_.rows() : joints_.rows.at_midpoint();
+  }
+  /// Bounds of friction in the joints by the forces in them.
+  [[nodiscard]] FrictionBounds& friction_bounds() { return bounds_; }
   /// Makes velocities obey its condition.
   void allow_answered(double* velocity) { answer_.allow(joints_.rows.at_end(), velocity, joints_.left); }
   /// Velocities at the end as contact sees them.
@@ -119,26 +126,23 @@ public:
   /// The iterate: impulses of the joints alone, the last displacement back onto them.
   [[nodiscard]] JointIterate& iterate() { return joints_; }
   /// Takes the step down for the guess at the next one.
-  void record(JointHistory& history) const { untouched_.record(struck_, history); }
+  void record(JointHistory& history) const { untouched_.record(is_struck(), history); }
   /// True if anything but friction in joints takes part.
-  [[nodiscard]] bool is_struck() const { return struck_; }
+  [[nodiscard]] bool is_struck() const { return touch_ == JointsTouch::contact; }
   [[nodiscard]] StepJointRows& rows() { return joints_.rows; }
   /// The joint whose constraints the last iterate violates most. \param violation out: by how much
   [[nodiscard]] JointId worst_joint(double& violation) const;
 
 private:
   void begin_at_start(const StepInput& in, bool mean, StepTrial& trial);
-  [[nodiscard]] bool react_to_contact(const StepInput& in, JointContacts& contacts, StepTrial& trial);
-  void update_friction_rows(JointContacts& contacts, StepTrial& trial);
 
   JointIterate joints_;
   JointAnswer answer_;
   UntouchedJoints untouched_;  // iterates joints_
-  bool struck_ = false;
-  bool guessed_ = false;       // untouched_ iterates the step
-  std::vector<double> total_;  // L, and what contact adds
-  FrictionBounds bounds_;      // of friction in the joints
-  FrictionBoundSolver bound_solver_;
+  JointsTouch touch_ = JointsTouch::nothing;
+  bool guessed_ = false;        // untouched_ iterates the step
+  std::vector<double> total_;   // L, and what contact adds
+  FrictionBounds bounds_;       // of friction in the joints
   std::vector<double> breaks_;  // of drivers, ascending [s]
 };
 

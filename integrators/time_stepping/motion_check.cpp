@@ -14,10 +14,11 @@ void demand_motion(const StepIsland& island, const StepInput& in, StepParts& par
   }
 }
 
-void demand_closed(JointStage& joints, const StepInput& in, Index component, StepParts& parts) {
+void demand_closed(JointStage& joints, const StepInput& in, StepParts& parts) {
   constexpr double unseen = 1e-8, tolerances = 10.0;  // of the size of the mechanism, and of the tolerance
   double gap = 0.0;
   const JointId worst = joints.worst_joint(gap);
+  const Index component = joints.iterate().component;
   const Range bodies = in.assembly.components()[component].bodies;
   const double size = size_of(in.assembly, bodies, joints.iterate().arrays->lengths, parts.trial.end);
   if (gap > tolerances * parts.options.tolerance + unseen * size) {

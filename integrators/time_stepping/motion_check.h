@@ -14,7 +14,7 @@ namespace carom {
 /// Throws SolverError where the bodies of an island would be moved back onto its joints farther than they go.
 CAROM_API void demand_motion(const StepIsland& island, const StepInput& in, StepParts& parts);
 
-/// Throws SolverError where a joint of the component stays open, beyond what rounding and tolerance let it.
-CAROM_API void demand_closed(JointStage& joints, const StepInput& in, Index component, StepParts& parts);
+/// Throws SolverError where a joint stays open, beyond what rounding and tolerance let it.
+CAROM_API void demand_closed(JointStage& joints, const StepInput& in, StepParts& parts);
 
 }  // namespace carom

@@ -199,17 +199,6 @@ void StepErrors::fail_contact(const IslandProblem& problem) const {
   fail(message, failure);
 }
 
-void StepErrors::fail_joined(std::span<const Constraint> constraints) const {
-  SolverFailure failure = this->failure();
-  for (const Constraint& constraint : constraints) {
-    if (constraint.bodies > 1) failure.parts.push_back(detector_.name(constraint.key));
-  }
-  fail(listed(failure.parts) +
-           " joins a mechanism, with friction in its joints that is bound by their force, to other "
-           "bodies; allowed: friction in joints with a constant bound there",
-       failure);
-}
-
 void StepErrors::fail_account(Range components) const {
   for (Index component = components.begin; component < components.end; ++component) {
     StoredEnergies stored;

@@ -54,8 +54,6 @@ public:
   [[noreturn]] void fail_stray(const StrayBody& stray) const;
   /// A contact problem is not solved.
   [[noreturn]] void fail_contact(const IslandProblem& problem) const;
-  /// Constraints join components with joints, which are not solved together.
-  [[noreturn]] void fail_joined(std::span<const Constraint> constraints) const;
   /// A contact problem as a failure tells it: its parts by name, its residual, a copy of it.
   [[nodiscard]] SolverFailure failure_of(const IslandProblem& problem) const;
   /// An energy is not finite: in the first of some components of which one is not.

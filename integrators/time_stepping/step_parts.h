@@ -6,7 +6,6 @@
 #include <carom/core/assembly.h>
 #include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/contact_stage.h>
-#include <carom/integrators/time_stepping/joined_mechanisms.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 #include <carom/integrators/time_stepping/located_impacts.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
@@ -32,8 +31,7 @@ struct StepParts {
         located(model, constraints.detector(), chosen),
         trial(model, step_needs(model, constraints.detector(), rule.is_mean())),
         schedule(model, chosen, trial.needs),
-        joints(model),
-        joined(model, joints) {
+        joints(model) {
     if (options.impacts == ImpactTimes::located) {
       constraints.allow_rounding(options.step, ends_at_closings());
     }
@@ -89,7 +87,6 @@ struct StepParts {
   StepTrial trial;
   SweepSchedule schedule;
   JointStages joints;
-  JoinedMechanisms joined;
   StepFlights flights;
 };
 
