@@ -55,6 +55,10 @@ public:
   /// Problems of the island at hand.
   [[nodiscard]] std::span<IslandProblem> problems() { return problems_.list(); }
   [[nodiscard]] std::span<const IslandProblem> problems() const { return problems_.list(); }
+  /// The problem of an island whose bodies answer together; null where nothing touches.
+  [[nodiscard]] IslandProblem* together() {
+    return problems_.list().empty() ? nullptr : &problems_.list().front();
+  }
   /// True if problems lie within the blocks of one component each, so that blocks can be solved one by one.
   [[nodiscard]] bool by_block() const { return by_block_; }
   /// True if impulses may change velocities of a block of the only component.

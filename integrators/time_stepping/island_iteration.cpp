@@ -8,26 +8,34 @@
 
 namespace carom {
 
-IslandIteration::IslandIteration(StepParts& parts, const StopRequest* stop)
-    : parts_(&parts),
+IslandIteration::IslandIteration(const StepModel& model, const StepConstraints& constraints,
+                                 SweepSchedule& schedule, ContactStage& contacts, LocatedImpacts& located,
+                                 JointStages& joints, StepTrial& trial, const StopRequest* stop)
+    : model_(&model),
+      constraints_(&constraints),
+      schedule_(&schedule),
+      contacts_(&contacts),
+      located_(&located),
+      joint_stages_(&joints),
+      trial_(&trial),
       stop_(stop),
-      method_(*parts.assembly),
-      joints_(*parts.assembly, parts.constraints.detector().joints(), parts.joints) {
-  sweeps_.assign(parts.assembly->components().size(), 1);
-  method_.use(parts.options.iteration);
+      method_(model.assembly),
+      joints_(model.assembly, model.detector.joints(), joints) {
+  sweeps_.assign(model.assembly.components().size(), 1);
+  method_.use(model.options.iteration);
 }
 
 LoadsKnown IslandIteration::solve(const StepIsland& island, const StepInput& in, FixedPointJudge& judge) {
   const LoadsKnown known = iterate(island, in, judge);
   if (!contacts_return(in)) return known;
   allow_return(in, island.constraints);
-  judge = FixedPointJudge(parts_->tolerance(in), parts_->options.max_sweeps);
+  judge = FixedPointJudge(model_->tolerance(in), model_->options.max_sweeps);
   return iterate(island, in, judge);
 }
 
 bool IslandIteration::contacts_return(const StepInput& in) const {
-  return !parts_->located.on() && any_returns(in, parts_->contacts.problems(), parts_->rule,
-                                              parts_->options.capture_speed, parts_->trial);
+  return !located_->on() &&
+         any_returns(in, contacts_->problems(), model_->rule, model_->options.capture_speed, *trial_);
 }
 
 /// Sweeps until the next would change no more than the tolerance. Returns what is known of the loads then.
@@ -35,14 +43,14 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
   using Verdict = FixedPointJudge::Verdict;
   begin(island, in);
   const Index front = island.components.front();
-  const std::vector<int>& before = parts_->trial.history.sweeps;
+  const std::vector<int>& before = trial_->history.sweeps;
   const int expected = before.size() == sweeps_.size() ? before[front] : 1;
   for (;;) {
     if (stop_ != nullptr) stop_->check();
-    SweepsMade made = is_streamed(island) ? sweep_streamed(parts_->stages(in, front), expected, judge)
+    SweepsMade made = is_streamed(island) ? sweep_streamed(sweep_of(in, front), expected, judge)
                                           : sweep_staged(island, in, expected, judge);
-    if (const IslandProblem* const failed = parts_->located.first_unsolved()) {
-      parts_->errors(in, front).fail_contact(*failed);
+    if (const IslandProblem* const failed = located_->first_unsolved()) {
+      model_->errors(in, front, *trial_).fail_contact(*failed);
     }
     const SweepChange change = made.change;
     const bool ahead = joints_.any() ? joints_.looks_ahead() : !method_.is_newton();
@@ -61,7 +69,7 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
       }
       const bool moved = joints_.any() && converge_joints(island, in);
-      demand_motion(island, in, *parts_);
+      for (const JointStage* const joints : joints_.jointed()) demand_motion(*joints, in, *model_, *trial_);
       return moved ? LoadsKnown::total : made.known;
     }
     improve(island, in, judge);
@@ -71,17 +79,17 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
 /// The next guess at the loads.
 void IslandIteration::improve(const StepIsland& island, const StepInput& in, const FixedPointJudge& judge) {
   const bool sweeps = method_.current() == Iteration::fixed_point;
-  if (!sweeps) return method_.improve(island.components, judge, parts_->trial);
-  for (const Index component : island.components) parts_->schedule.improve(parts_->stages(in, component));
+  if (!sweeps) return method_.improve(island.components, judge, *trial_);
+  for (const Index component : island.components) schedule_->improve(sweep_of(in, component));
 }
 
 /// Bodies that are hit within the step, as far as the iterate says. True if there are more than were known.
 bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in) {
-  if (!parts_->located.on() || method_.is_newton() || joints_.any()) return false;
+  if (!located_->on() || method_.is_newton() || joints_.any()) return false;
   bool any = false;
   for (const Index component : island.components) {
-    any = parts_->located.take_up(in, {component, component + 1}, island.constraints,
-                                  parts_->constraints.places(true), parts_->trial) ||
+    any = located_->take_up(in, {component, component + 1}, island.constraints, constraints_->places(true),
+                            *trial_) ||
           any;
   }
   return any;
@@ -91,14 +99,13 @@ bool IslandIteration::find_impacts(const StepIsland& island, const StepInput& in
 /// local looks only where the blocks concerned are few
 bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in, bool local) {
   constexpr int most_updates = 20;
-  StepTrial& trial = parts_->trial;
+  StepTrial& trial = *trial_;
   if (!(trial.needs.dissipative || trial.needs.external)) return false;
-  if (jump_updates_ == most_updates || !(parts_->located.any_hit() || trial.jumps.on)) return false;
+  if (jump_updates_ == most_updates || !(located_->any_hit() || trial.jumps.on)) return false;
   ++jump_updates_;
   bool any = false;
   for (const Index component : island.components) {
-    any =
-        parts_->located.update_jumps(in, parts_->rule, component, local, parts_->tolerance(in), trial) || any;
+    any = located_->update_jumps(in, model_->rule, component, local, model_->tolerance(in), trial) || any;
   }
   return any;
 }
@@ -107,43 +114,41 @@ bool IslandIteration::loads_jump(const StepIsland& island, const StepInput& in, 
 void IslandIteration::begin(const StepIsland& island, const StepInput& in) {
   joints_.bind(island);
   const bool together = method_.is_newton() || joints_.any();
-  parts_->contacts.state_problems(in, island, together, parts_->trial);
-  parts_->located.clear();
-  parts_->trial.jumps.on = false;
+  contacts_->state_problems(in, island, together, *trial_);
+  located_->clear();
+  trial_->jumps.on = false;
   jump_updates_ = 0;
-  parts_->trial.account.swept = false;
+  trial_->account.swept = false;
   for (const Index component : island.components) {
-    const Range z = parts_->assembly->components()[component].z;
-    std::copy(in.start.z.begin() + z.begin, in.start.z.begin() + z.end,
-              parts_->trial.end.z.begin() + z.begin);
+    const Range z = model_->assembly.components()[component].z;
+    std::copy(in.start.z.begin() + z.begin, in.start.z.begin() + z.end, trial_->end.z.begin() + z.begin);
   }
   method_.start(island.components);
   // Mechanisms, and what they touch, keep to the step: it ends where they are hit.
-  if (parts_->located.on() && !together) {
+  if (located_->on() && !together) {
     for (const Index component : island.components) {
-      parts_->located.expect(in, component, island.constraints, parts_->constraints.places(false),
-                             parts_->trial);
+      located_->expect(in, component, island.constraints, constraints_->places(false), *trial_);
     }
   }
   if (is_streamed(island)) {
     presolve(island, in);
   } else {
-    for (const Index component : island.components) parts_->schedule.guess(parts_->stages(in, component));
+    for (const Index component : island.components) schedule_->guess(sweep_of(in, component));
   }
-  if (joints_.any()) joints_.start(in, parts_->rule, method_.current(), contact_of(island), parts_->trial);
+  if (joints_.any()) joints_.start(in, model_->rule, method_.current(), contact_of(island), *trial_);
   if (!method_.is_newton()) return;
-  demand(method_.newton().start(in, parts_->rule, newton_island(island), parts_->trial), island, in);
+  demand(method_.newton().start(in, model_->rule, newton_island(island), *trial_), island, in);
 }
 
 /// Sweeps around contacts alone, and again where loads jump there, or contacts return: the whole of the
 /// component need not be iterated twice for these.
 void IslandIteration::presolve(const StepIsland& island, const StepInput& in) {
-  const SweepStages stages = parts_->stages(in, island.components.front());
-  const double tolerance = parts_->tolerance(in);
+  const SweepStages stages = sweep_of(in, island.components.front());
+  const double tolerance = model_->tolerance(in);
   int sweeps = 0;
   bool contract = false;
   const auto sweep = [&](bool again) {
-    const auto local = parts_->schedule.presolve(stages, method_.current(), tolerance, again);
+    const auto local = schedule_->presolve(stages, method_.current(), tolerance, again);
     sweeps += local.made;
     contract = local.contract;
   };
@@ -151,7 +156,7 @@ void IslandIteration::presolve(const StepIsland& island, const StepInput& in) {
   while (sweeps > 0 && loads_jump(island, in, true)) sweep(true);
   if (contract && contacts_return(in)) {
     allow_return(in, island.constraints);
-    parts_->contacts.state_problems(in, island, false, parts_->trial);
+    contacts_->state_problems(in, island, false, *trial_);
     sweep(true);
   }
   local_sweeps_ = std::max(local_sweeps_, sweeps);
@@ -163,21 +168,21 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
   constexpr double improved = 0.8;
   constexpr double open = 1e5;  // roundings
   const Index front = island.components.front();
-  double left = joints_.violation(in, parts_->trial);
+  double left = joints_.violation(in, *trial_);
   if (!joints_.is_near_singular() && !(left > 1.0)) return false;
-  for (int sweeps = 0; sweeps < parts_->options.max_sweeps && left > 1.0; ++sweeps) {
+  for (int sweeps = 0; sweeps < model_->options.max_sweeps && left > 1.0; ++sweeps) {
     sweep_joints(island, in);
     if (method_.is_newton() && method_.newton().follows_rows()) {  // it asks for the loads where bodies are
       follow(in, front);
-      parts_->schedule.evaluate(parts_->stages(in, front), LoadsKnown::total, false);
+      schedule_->evaluate(sweep_of(in, front), LoadsKnown::total, false);
     }
-    const double now = joints_.violation(in, parts_->trial);
+    const double now = joints_.violation(in, *trial_);
     if (!(now < improved * left)) break;
     left = now;
   }
   for (JointStage* const joints : joints_.jointed()) {
-    if (left > open) demand_closed(*joints, in, *parts_);
-    if (joints->rows().is_near_singular()) joints->settle_velocities(parts_->trial);
+    if (left > open) demand_closed(*joints, in, *model_, *trial_);
+    if (joints->rows().is_near_singular()) joints->settle_velocities(*trial_);
   }
   for (const Index component : island.components) follow(in, component);
   return true;
@@ -185,32 +190,31 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
 
 /// Nothing comes between the bodies of a block and their loads.
 bool IslandIteration::is_streamed(const StepIsland& island) const {
-  return island.components.size() == 1 && !method_.is_newton() && parts_->contacts.by_block() &&
-         parts_->schedule.coupling(island.components.front()) == CouplingClass::streamable;
+  return island.components.size() == 1 && !method_.is_newton() && contacts_->by_block() &&
+         model_->batches.coupling(island.components.front()) == CouplingClass::streamable;
 }
 
 /// Newton's method went on, or says why not.
 void IslandIteration::demand(NewtonIteration::Outcome outcome, const StepIsland& island,
                              const StepInput& in) {
   if (outcome == NewtonIteration::Outcome::done) return;
-  const StepErrors errors = parts_->errors(in, island.components.front());
+  const StepErrors errors = model_->errors(in, island.components.front(), *trial_);
   if (outcome == NewtonIteration::Outcome::singular) errors.fail_linearisation(island.components);
-  errors.fail_contact(parts_->contacts.problems().front());
+  errors.fail_contact(contacts_->problems().front());
 }
 
 NewtonIsland IslandIteration::newton_island(const StepIsland& island) {
-  return {island.components, parts_->joints, parts_->problem(), parts_->contacts.chain()};
+  return {island.components, *joint_stages_, contacts_->together(), contacts_->chain()};
 }
 
 void IslandIteration::fail_contraction(const StepIsland& island, const StepInput& in,
                                        const FixedPointJudge& judge) {
-  parts_->errors(in, island.components.front())
-      .fail_contraction(judge, method_.current(),
-                        {island.components, parts_->joints, parts_->contacts.problems()});
+  model_->errors(in, island.components.front(), *trial_)
+      .fail_contraction(judge, method_.current(), {island.components, *joint_stages_, contacts_->problems()});
 }
 
 IslandContact IslandIteration::contact_of(const StepIsland& island) {
-  return {island.constraints, parts_->problem(), parts_->contacts.chain(), method_.is_newton()};
+  return {island.constraints, contacts_->together(), contacts_->chain(), method_.is_newton()};
 }
 
 }  // namespace carom

@@ -9,8 +9,11 @@
 #include <carom/integrators/run/stop_request.h>
 #include <carom/integrators/time_stepping/island_joints.h>
 #include <carom/integrators/time_stepping/load_iteration.h>
+#include <carom/integrators/time_stepping/located_impacts.h>
+#include <carom/integrators/time_stepping/step_constraints.h>
 #include <carom/integrators/time_stepping/step_input.h>
-#include <carom/integrators/time_stepping/step_parts.h>
+#include <carom/integrators/time_stepping/step_model.h>
+#include <carom/integrators/time_stepping/sweep_schedule.h>
 
 #include <utility>
 #include <vector>
@@ -20,11 +23,18 @@ namespace carom {
 /// Iterates islands. Keeps memory only.
 class CAROM_API IslandIteration {
 public:
-  /// \param parts must outlive it \param stop asked between sweeps, may be null; must outlive it
-  IslandIteration(StepParts& parts, const StopRequest* stop);
+  /// All must outlive it. \param stop asked between sweeps, may be null
+  IslandIteration(const StepModel& model, const StepConstraints& constraints, SweepSchedule& schedule,
+                  ContactStage& contacts, LocatedImpacts& located, JointStages& joints, StepTrial& trial,
+                  const StopRequest* stop);
 
   /// Uses another iteration.
   void use(Iteration iteration) { method_.use(iteration); }
+  /// A sweep over one component, stage by stage.
+  [[nodiscard]] SweepStages sweep_of(const StepInput& in, Index component) const {
+    return {in,      model_->rule, component, *contacts_, *trial_, joint_stages_->of(component) != nullptr,
+            located_};
+  }
   /// The one in use.
   [[nodiscard]] Iteration current() const { return method_.current(); }
   /// Solves the equations of an island. Returns what is known of the loads of the last iterate. Throws
@@ -63,7 +73,13 @@ private:
   [[noreturn]] void fail_contraction(const StepIsland& island, const StepInput& in,
                                      const FixedPointJudge& judge);
 
-  StepParts* parts_;
+  const StepModel* model_;
+  const StepConstraints* constraints_;
+  SweepSchedule* schedule_;
+  ContactStage* contacts_;
+  LocatedImpacts* located_;
+  JointStages* joint_stages_;
+  StepTrial* trial_;
   const StopRequest* stop_;  // may be null
   LoadIteration method_;
   IslandJoints joints_;      // of the island at hand

@@ -195,23 +195,6 @@ void JointStage::finish(const StepInput& in, StepTrial& trial) const {
   if (!guessed_) joints_.rows.place_midpoint(in, trial);
 }
 
-double JointStage::project_velocities(StepTrial& trial) {
-  const auto kinetic = [&] {
-    double sum = 0.0;
-    joints_.assembly->for_bodies(joints_.component,
-                                 [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-                                   sum += kind.kinetic_energy(slots, trial.end.v.data() + v);
-                                 });
-    return sum;
-  };
-  JointConstraints& joints = joints_.rows.at_end();
-  const double before = kinetic();
-  joints.update_and_factor({trial.end.view(), trial.at_end.rotation.data()});
-  joints.project(JointLevel::velocity, trial.end.v.data());
-  joints.project(JointLevel::velocity, trial.end.v.data());  // what rounding left
-  return before - kinetic();
-}
-
 double JointStage::violation(const StepInput& in, StepTrial& trial) {
   if (guessed_) return untouched_.violation();
   joints_.rows.place_end(in, trial);

@@ -106,8 +106,6 @@ public:
   void settle_velocities(StepTrial& trial);
   /// Brings the midpoint to the answer, rotations included.
   void finish(const StepInput& in, StepTrial& trial) const;
-  /// Velocities that the joints allow where bodies have been moved to. Returns the kinetic energy lost [J].
-  double project_velocities(StepTrial& trial);
   /// Answer to contact.
   [[nodiscard]] JointAnswer& answer() { return answer_; }
   /// Rows of the joints that answer what touches them.
@@ -125,6 +123,7 @@ public:
   [[nodiscard]] const double* multipliers(const IslandProblem* problem);
   /// The iterate: impulses of the joints alone, the last displacement back onto them.
   [[nodiscard]] JointIterate& iterate() { return joints_; }
+  [[nodiscard]] const JointIterate& iterate() const { return joints_; }
   /// Takes the step down for the guess at the next one.
   void record(JointHistory& history) const { untouched_.record(is_struck(), history); }
   /// True if anything but friction in joints takes part.

@@ -1,7 +1,7 @@
 // Problem: what the flights and impacts of a body that is hit within a step make of the account, and of loads
 // that depend on velocities.
 
-#include <carom/integrators/time_stepping/located_account.h>
+#include <carom/integrators/time_stepping/located_impacts.h>
 
 #include <algorithm>
 
@@ -35,23 +35,6 @@ double LocatedMotion::work(const StepInput& in, const StepLoads& of) const {
   double sum = 0.0;
   for (const MotionPhase& phase : phases()) phase.add_work(loads, v, in.step, sum);
   return sum;
-}
-
-void locate_under_constant_loads(Range components, std::span<const Constraint> contacts, const StepInput& in,
-                                 StepParts& parts) {
-  const GroundPlaces& places = parts.constraints.places(true);
-  if (!parts.located.take_up(in, components, contacts, places, parts.trial)) return;
-  const double* const total = in.companion.loads.total.data();
-  const Range bodies = in.assembly.bodies_of(components);
-  parts.located.advance(in, parts.rule, {total, total}, bodies, parts.trial);
-  for (const LocatedMotion* motion : parts.located.motions_of(bodies)) {
-    if (motion->failed() != nullptr) parts.errors(in, *motion->failed()).fail_contact(*motion->failed());
-  }
-}
-
-void add_work_of_flights(Range components, const StepInput& in, StepParts& parts) {
-  parts.trial.account.works.front().total +=
-      parts.located.work_of_flights(in, parts.rule, in.assembly.bodies_of(components), parts.trial);
 }
 
 }  // namespace carom

@@ -12,12 +12,6 @@ namespace carom {
 
 namespace {
 
-/// True if all impacts are of Newton's law, each of all contacts that are closed, as those of LocatedMotion.
-bool follow_newton(const Detector& detector, const ImpactRules& rules) {
-  return rules.order == ImpactOrder::simultaneous && rules.energy_gain != EnergyGain::limit &&
-         !has_other_impact_law(detector) && !resists_rolling(detector);
-}
-
 /// Acceleration of the gap of a contact of one body by the loads at the start of a step [m/s^2].
 double acceleration_by_loads(const StepInput& in, const Constraint& contact) {
   const BodySlot slot = in.assembly.layout()->bodies()[contact.body()];
@@ -59,16 +53,16 @@ std::size_t count_of(Range bodies, std::span<const Constraint> contacts) {
 
 }  // namespace
 
-LocatedImpacts::LocatedImpacts(const Assembly& assembly, const Detector& detector,
-                               const TimeStepping& options)
-    : assembly_(&assembly),
-      detector_(&detector),
-      jumps_(assembly),
-      on_(options.impacts == ImpactTimes::located && follow_newton(detector, options.impact_rules)),
-      of_one_piece_(!detector.outlines().ground_touches() && detector.joints().empty()),
-      rules_{options.most_impacts, CaptureRule::of(assembly, options), gap_rounding(assembly, options),
-             turning_rounding(options), options.impact_rules},
-      budget_(budget_of(options)) {}
+LocatedImpacts::LocatedImpacts(const StepModel& model)
+    : assembly_(&model.assembly),
+      detector_(&model.detector),
+      jumps_(model.assembly),
+      on_(model.follows_bodies),
+      of_one_piece_(!model.detector.outlines().ground_touches() && model.detector.joints().empty()),
+      rules_{model.options.most_impacts, CaptureRule::of(model.assembly, model.options),
+             gap_rounding(model.assembly, model.options), turning_rounding(model.options),
+             model.options.impact_rules},
+      budget_(budget_of(model.options)) {}
 
 std::size_t LocatedImpacts::place(Index body) const {
   const auto before = [](const auto& entry, Index of) { return entry.first < of; };

@@ -8,9 +8,9 @@
 #include <carom/core/assembly.h>
 #include <carom/core/constraint_set.h>
 #include <carom/core/export.h>
-#include <carom/integrators/run/time_stepping.h>
 #include <carom/integrators/time_stepping/jump_search.h>
 #include <carom/integrators/time_stepping/located_motion.h>
+#include <carom/integrators/time_stepping/step_model.h>
 
 #include <cstddef>
 #include <span>
@@ -22,8 +22,8 @@ namespace carom {
 /// Finds bodies that shapes on ground hit within the step, and moves them. Keeps memory.
 class CAROM_API LocatedImpacts {
 public:
-  /// \param assembly,detector must outlive it
-  LocatedImpacts(const Assembly& assembly, const Detector& detector, const TimeStepping& options);
+  /// \param model must outlive it
+  explicit LocatedImpacts(const StepModel& model);
 
   /// True if impacts are located here. Those of other laws than Newton's, or with rules of their own, are by
   /// steps that end there (set_phases.h).

@@ -7,14 +7,18 @@
 #include <carom/core/export.h>
 #include <carom/integrators/time_stepping/joint_stage.h>
 #include <carom/integrators/time_stepping/step_input.h>
-#include <carom/integrators/time_stepping/step_parts.h>
+#include <carom/integrators/time_stepping/step_model.h>
 
 namespace carom {
 
-/// Throws SolverError where the bodies of an island would be moved back onto its joints farther than they go.
-CAROM_API void demand_motion(const StepIsland& island, const StepInput& in, StepParts& parts);
+/// Throws SolverError where the bodies of a component would be moved back onto its joints farther than they
+/// go. \param trial the end of the step
+CAROM_API void demand_motion(const JointStage& joints, const StepInput& in, const StepModel& model,
+                             StepTrial& trial);
 
-/// Throws SolverError where a joint stays open, beyond what rounding and tolerance let it.
-CAROM_API void demand_closed(JointStage& joints, const StepInput& in, StepParts& parts);
+/// Throws SolverError where a joint stays open, beyond what rounding and tolerance let it. \param trial
+/// the end of the step
+CAROM_API void demand_closed(const JointStage& joints, const StepInput& in, const StepModel& model,
+                             StepTrial& trial);
 
 }  // namespace carom

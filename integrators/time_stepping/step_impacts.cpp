@@ -13,27 +13,27 @@ namespace {
 constexpr double speed_rounding = 1e-12;
 
 /// Large ones are left to sweeps, but for laws whose solver needs W in full.
-IslandOptions options_of_impacts(const StepParts& parts) {
-  IslandOptions options{.plastic_jams = !parts.options.impact_rules.refuse_jams};
-  if (!has_other_impact_law(parts.constraints.detector())) options.factored_from = factored_constraints;
+IslandOptions options_of_impacts(const StepModel& model) {
+  IslandOptions options{.plastic_jams = !model.options.impact_rules.refuse_jams};
+  if (!has_other_impact_law(model.detector)) options.factored_from = factored_constraints;
   return options;
 }
 
 }  // namespace
 
-StepImpacts::StepImpacts(StepParts& parts)
-    : parts_(&parts),
-      on_(parts.options.impact_rules.order == ImpactOrder::sequential ||
-          parts.options.impact_rules.energy_gain == EnergyGain::limit ||
-          parts.options.overlaps.never_tunnel || parts.ends_at_closings() ||
-          has_other_impact_law(parts.constraints.detector())),
-      capture_(CaptureRule::of(*parts.assembly, parts.options)),
-      balance_(*parts.assembly, parts.options),
-      problems_(options_of_impacts(parts)),
-      response_(*parts.assembly) {
+StepImpacts::StepImpacts(const StepModel& model)
+    : model_(&model),
+      on_(model.options.impact_rules.order == ImpactOrder::sequential ||
+          model.options.impact_rules.energy_gain == EnergyGain::limit ||
+          model.options.overlaps.never_tunnel || model.ends_at_closings ||
+          has_other_impact_law(model.detector)),
+      capture_(CaptureRule::of(model.assembly, model.options)),
+      balance_(model.assembly, model.options),
+      problems_(options_of_impacts(model)),
+      response_(model.assembly) {
   if (!on_) return;
-  chain_.set_budget(budget_of(parts.options));
-  const Assembly& assembly = *parts.assembly;
+  chain_.set_budget(budget_of(model.options));
+  const Assembly& assembly = model.assembly;
   joints_.reserve(assembly.components().size());
   for (Index component = 0; component < assembly.components().size(); ++component) {
     if (append_constraints(assembly, component, joints_)) joints_.back().factors().reveal_rank(true);
@@ -42,10 +42,10 @@ StepImpacts::StepImpacts(StepParts& parts)
   response_.bind(list_);
 }
 
-bool StepImpacts::resolve(const StepInput& in) {
+bool StepImpacts::resolve(const StepInput& in, std::span<const StepIsland> islands, StepTrial& trial) {
   bool struck = false;
   const auto bodies = static_cast<Index>(in.assembly.layout()->bodies().size());
-  for (const StepIsland& island : parts_->constraints.islands()) {
+  for (const StepIsland& island : islands) {
     contacts_.clear();
     for (const Constraint& constraint : island.constraints) {
       if (!takes_part(constraint, impacts_of_steps, false)) continue;
@@ -63,12 +63,12 @@ bool StepImpacts::resolve(const StepInput& in) {
     if (!struck) {
       start_ = in.start;
       balance_.begin(in);
-      place_joints(in);
+      place_joints(in, trial);
     }
     struck = true;
     const auto mechanism = [&](Index body) { return in.assembly.mechanism(body); };
     for (const Range part : partition_.arrange(std::span(contacts_), bodies, mechanism)) {
-      resolve_island(in, std::span(contacts_).subspan(part.begin, part.size()));
+      resolve_island(in, std::span(contacts_).subspan(part.begin, part.size()), trial);
     }
   }
   return struck;
@@ -78,16 +78,16 @@ bool StepImpacts::resolve(const StepInput& in) {
 /// approach are
 bool StepImpacts::is_noted(const std::vector<ConstraintKey>& keys, bool all, const Constraint& contact,
                            const double* v) const {
-  if (!parts_->ends_at_closings() || (keys.empty() && !all)) return false;
+  if (!model_->ends_at_closings || (keys.empty() && !all)) return false;
   if (!(contact.normal_velocity(v) < -capture_.slowest)) return false;
   return all || std::find(keys.begin(), keys.end(), contact.key) != keys.end();
 }
 
-void StepImpacts::place_joints(const StepInput& in) {
+void StepImpacts::place_joints(const StepInput& in, StepTrial& trial) {
   if (joints_.empty()) return;
-  evaluate_positions(in.assembly, in.start.view(), parts_->trial.at_start);
+  evaluate_positions(in.assembly, in.start.view(), trial.at_start);
   for (JointConstraints& joints : joints_) {
-    joints.update_and_factor({in.start.view(), parts_->trial.at_start.rotation.data()});
+    joints.update_and_factor({in.start.view(), trial.at_start.rotation.data()});
   }
 }
 
@@ -101,8 +101,9 @@ double StepImpacts::fastest(std::span<const Constraint> contacts) const {
 
 /// Impacts of contacts that share bodies, until none closes faster than the capture speed; a sequence, until
 /// none closes at all.
-void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint> contacts) {
-  const TimeStepping& options = parts_->options;
+void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint> contacts,
+                                 StepTrial& trial) {
+  const TimeStepping& options = model_->options;
   const bool sequential = options.impact_rules.order == ImpactOrder::sequential;
   const ClosingNotes& notes = in.companion.closings;
   double noise = 0.0;
@@ -126,20 +127,20 @@ void StepImpacts::resolve_island(const StepInput& in, std::span<const Constraint
     const auto by = [this](ImpactLaw law) { return solve(law); };
     const Struck struck = strike(touching_, impact, by);
     if (struck.outcome == Struck::Outcome::laws_differ)
-      errors(in).fail_impacts(solve(ImpactLaw::newton).problem, laws_of_impact_differ);
-    if (struck.outcome == Struck::Outcome::not_solved) errors(in).fail_contact(*struck.problem);
+      errors(in, trial).fail_impacts(solve(ImpactLaw::newton).problem, laws_of_impact_differ);
+    if (struck.outcome == Struck::Outcome::not_solved) errors(in, trial).fail_contact(*struck.problem);
     ImpactNote note;
     note.cut_sequence = any_cut || struck.cut_sequence;
     note.restitution_factor = struck.restitution_factor;
-    apply(in, note, *struck.problem);
+    apply(in, note, *struck.problem, trial);
     if (note.cut_sequence) return;
   }
-  errors(in).fail_impacts(problems_.by(ImpactLaw::newton), impacts_without_end());
+  errors(in, trial).fail_impacts(problems_.by(ImpactLaw::newton), impacts_without_end());
 }
 
 /// Errors of the component of an impact.
-StepErrors StepImpacts::errors(const StepInput& in) {
-  return parts_->errors(in, in.assembly.component_of(touching_[0].body()));
+StepErrors StepImpacts::errors(const StepInput& in, StepTrial& trial) const {
+  return model_->errors(in, in.assembly.component_of(touching_[0].body()), trial);
 }
 
 /// States and solves the impact of the contacts listed.
@@ -164,14 +165,15 @@ double StepImpacts::kinetic_energy(const StepInput& in) const {
 /// Books the impact. Joints whose rate is prescribed do work on it, which is the rest of the change.
 /// Velocities of the rule of mean loads obey joints but for an error of the step, on which their answers do
 /// work.
-void StepImpacts::apply(const StepInput& in, const ImpactNote& note, const IslandProblem& problem) {
+void StepImpacts::apply(const StepInput& in, const ImpactNote& note, const IslandProblem& problem,
+                        StepTrial& trial) {
   const bool driven = std::any_of(joints_.begin(), joints_.end(),
                                   [](const JointConstraints& joints) { return joints.depends_on_time(); });
-  const bool has_rest = driven || (parts_->rule.is_mean() && !joints_.empty());
+  const bool has_rest = driven || (model_->rule.is_mean() && !joints_.empty());
   const double before = has_rest ? kinetic_energy(in) : 0.0;
   problem.map().add_velocities(start_.v.data());
   const EnergyFlows known = balance_.result().flows;
-  const double gain = balance_.book_impact(problem, start_.v.data(), note, in, parts_->trial);
+  const double gain = balance_.book_impact(problem, start_.v.data(), note, in, trial);
   EnergyFlows& flows = balance_.result().flows;
   if (has_rest) {
     double booked = 0.0;
@@ -190,8 +192,8 @@ void StepImpacts::apply(const StepInput& in, const ImpactNote& note, const Islan
       flows[line] = known[line];
     }
   }
-  if (gain > 0.0 && parts_->options.impact_rules.energy_gain == EnergyGain::refuse) {
-    errors(in).refuse_gain(problem, gain);
+  if (gain > 0.0 && model_->options.impact_rules.energy_gain == EnergyGain::refuse) {
+    errors(in, trial).refuse_gain(problem, gain);
   }
 }
 

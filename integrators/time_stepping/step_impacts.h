@@ -17,10 +17,11 @@
 #include <carom/core/export.h>
 #include <carom/integrators/run/impact_note.h>
 #include <carom/integrators/time_stepping/capture_rule.h>
+#include <carom/integrators/time_stepping/contact_stage.h>
 #include <carom/integrators/time_stepping/step_balance.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>
-#include <carom/integrators/time_stepping/step_parts.h>
+#include <carom/integrators/time_stepping/step_model.h>
 
 #include <span>
 #include <vector>
@@ -30,14 +31,15 @@ namespace carom {
 /// Resolves such impacts. Keeps memory, and statistics of its solvers.
 class CAROM_API StepImpacts {
 public:
-  /// \param parts must outlive it
-  explicit StepImpacts(StepParts& parts);
+  /// \param model must outlive it
+  explicit StepImpacts(const StepModel& model);
 
   /// True if impacts are resolved at the start of steps.
   [[nodiscard]] bool on() const { return on_; }
   /// Resolves the impacts of a step whose constraints are found. True if there were any: start() is the state
   /// after them, result() what they did. Throws SolverError where one is not solved, or is refused.
-  [[nodiscard]] bool resolve(const StepInput& in);
+  /// \param islands of the step \param trial rotations in it are worked with
+  [[nodiscard]] bool resolve(const StepInput& in, std::span<const StepIsland> islands, StepTrial& trial);
   /// State after the impacts.
   [[nodiscard]] const State& start() const { return start_; }
   /// Works and records of the impacts.
@@ -50,15 +52,15 @@ public:
 private:
   [[nodiscard]] bool is_noted(const std::vector<ConstraintKey>& keys, bool all, const Constraint& contact,
                               const double* v) const;
-  void resolve_island(const StepInput& in, std::span<const Constraint> contacts);
+  void resolve_island(const StepInput& in, std::span<const Constraint> contacts, StepTrial& trial);
   [[nodiscard]] double fastest(std::span<const Constraint> contacts) const;
   [[nodiscard]] StrikeAnswer solve(ImpactLaw law);
-  [[nodiscard]] StepErrors errors(const StepInput& in);
-  void place_joints(const StepInput& in);
-  void apply(const StepInput& in, const ImpactNote& note, const IslandProblem& problem);
+  [[nodiscard]] StepErrors errors(const StepInput& in, StepTrial& trial) const;
+  void place_joints(const StepInput& in, StepTrial& trial);
+  void apply(const StepInput& in, const ImpactNote& note, const IslandProblem& problem, StepTrial& trial);
   [[nodiscard]] double kinetic_energy(const StepInput& in) const;
 
-  StepParts* parts_;
+  const StepModel* model_;
   bool on_;
   CaptureRule capture_;
   State start_;

@@ -19,7 +19,7 @@
 #include <carom/integrators/time_stepping/step_balance.h>
 #include <carom/integrators/time_stepping/step_input.h>
 #include <carom/integrators/time_stepping/step_islands.h>
-#include <carom/integrators/time_stepping/step_parts.h>
+#include <carom/integrators/time_stepping/step_model.h>
 
 #include <span>
 #include <vector>
@@ -29,17 +29,19 @@ namespace carom {
 /// Moves the bodies of islands, and books what that changes. Keeps memory only.
 class CAROM_API StepProjection {
 public:
-  /// \param parts must outlive it
-  explicit StepProjection(StepParts& parts) : parts_(&parts) {}
+  /// Both must outlive it.
+  StepProjection(const StepModel& model, JointStages& joints) : model_(&model), stages_(&joints) {}
 
   /// Lets late contacts of islands come back as if they had been noticed when they closed, by what they may
   /// approach beyond their law (Constraint::allowed_approach); in all sweeps of the step alike.
-  void lower_rebounds(const StepInput& in, std::span<const StepIsland> islands);
+  void lower_rebounds(const StepInput& in, std::span<const StepIsland> islands, StepTrial& trial);
   /// Begins with a step, or with one that is made again: nothing is moved yet.
   void begin() { moved_.clear(); }
-  /// Moves those of an island whose end is in the trial. Throws SolverError naming a contact that cannot be
-  /// opened.
-  void apply(const StepIsland& island, const StepInput& in, StepBalance& balance);
+  /// Moves those of an island whose end is in the trial, and books that. Returns the components that it has
+  /// moved, valid until the next call: loads at the end are to be evaluated again. Throws SolverError naming
+  /// a contact that cannot be opened. \param places ground at the end
+  std::span<const Index> apply(const StepIsland& island, const StepInput& in, const GroundPlaces& places,
+                               SolverChain& chain, StepTrial& trial, StepBalance& balance);
   /// Brings the bodies that were moved in the step back to where they came without that. \param end positions
   /// of the end of the step
   void take_back(State& end) const;
@@ -51,11 +53,18 @@ private:
     std::span<const Constraint> constraints;
     bool joined;  // by contacts of bodies with each other
   };
-  void project(const Part& part, const StepInput& in, StepBalance& balance);
-  void change_by_loads(const StepInput& in, Index body);
-  [[nodiscard]] StoredEnergies potentials(std::span<const Index> components);
+  // Where, and with which solvers gaps are opened.
+  struct Means {
+    const GroundPlaces& places;
+    SolverChain& chain;
+  };
+  void project(const Part& part, const StepInput& in, const Means& means, StepTrial& trial,
+               StepBalance& balance);
+  void change_by_loads(const StepInput& in, Index body, StepTrial& trial);
+  [[nodiscard]] StoredEnergies potentials(std::span<const Index> components, StepTrial& trial) const;
 
-  StepParts* parts_;
+  const StepModel* model_;
+  JointStages* stages_;
   AssemblyGaps gaps_;
   Separator separator_;
   std::vector<Index> moved_;  // components, in the step at hand,

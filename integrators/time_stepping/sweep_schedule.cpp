@@ -9,21 +9,11 @@
 
 namespace carom {
 
-namespace {
-
-/// True if loads at the start of a step are those at its end, and conservative.
-bool stays_as_it_is(const ForceKind& kind) {
-  return kind.is_constant() && !kind.depends_on_time() && !kind.books_external() && !kind.books_dissipative();
-}
-
-}  // namespace
-
-SweepSchedule::SweepSchedule(const Assembly& assembly, const TimeStepping& options, const StepNeeds& needs)
+SweepSchedule::SweepSchedule(const Assembly& assembly, const TimeStepping& options, bool any_iterated)
     : assembly_(&assembly),
       threads_(static_cast<Index>(std::max(options.threads, 1))),
-      workers_(std::max(options.threads, 1)) {
-  classify(options, needs);
-  find_batches();
+      workers_(std::max(options.threads, 1)),
+      any_iterated_(any_iterated) {
   Index most_blocks = 1;
   for (const Component& component : assembly.components()) {
     most_blocks = std::max(most_blocks, component.blocks.size());
@@ -31,42 +21,6 @@ SweepSchedule::SweepSchedule(const Assembly& assembly, const TimeStepping& optio
   changes_.resize(most_blocks);
   earlier_changes_.resize(most_blocks);
   local_.resize(most_blocks);
-}
-
-void SweepSchedule::classify(const TimeStepping& options, const StepNeeds& needs) {
-  const Assembly& assembly = *assembly_;
-  coupling_.assign(assembly.components().size(), CouplingClass::iterated);
-  const bool mean = options.force_rule == ForceRule::energy_momentum;
-  if (options.iteration == Iteration::linearly_implicit || mean || needs.load_rotations) return;
-  for (Index component = 0; component < assembly.components().size(); ++component) {
-    if (assembly.has_joints(component) || !assembly.components()[component].z.empty()) continue;
-    coupling_[component] = CouplingClass::constant_loads;
-    for (Index kind = 0; kind < assembly.force_kinds().size(); ++kind) {
-      if (assembly.elements(component, kind).empty() || stays_as_it_is(*assembly.force_kinds()[kind]))
-        continue;
-      coupling_[component] = CouplingClass::streamable;
-    }
-  }
-}
-
-/// Parts of a batch need fields that can be evaluated in parts.
-void SweepSchedule::find_batches() {
-  any_iterated_ = std::any_of(coupling_.begin(), coupling_.end(), [](CouplingClass coupling) {
-    return coupling != CouplingClass::constant_loads;
-  });
-  const auto& kinds = assembly_->force_kinds();
-  const bool in_parts = std::all_of(kinds.begin(), kinds.end(), [](const auto& kind) {
-    return !kind->is_field() || kind->works_in_parts();
-  });
-  for (const Range batch : assembly_->batches()) {
-    if (in_parts && coupling_[batch.begin] == CouplingClass::constant_loads) {
-      batches_.push_back(batch);
-      continue;
-    }
-    for (Index component = batch.begin; component < batch.end; ++component) {
-      batches_.push_back({component, component + 1});
-    }
-  }
 }
 
 bool SweepSchedule::may_fuse(const SweepStages& stages, int sweeps, int expected) const {

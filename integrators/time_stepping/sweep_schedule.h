@@ -26,28 +26,15 @@
 
 namespace carom {
 
-/// Coupling of a component.
-enum class CouplingClass : std::uint8_t {
-  iterated,       ///< loads depend on what the step leads to
-  streamable,     ///< loads depend on what the step leads to; nothing comes between bodies and their loads
-  constant_loads  ///< loads are those at the start: no iteration
-};
-
 /// Loads of an iterate that are known after a pass.
 enum class LoadsKnown : std::uint8_t { total, by_cause };
 
 /// Runs sweeps. Keeps memory only.
 class CAROM_API SweepSchedule {
 public:
-  SweepSchedule(const Assembly& assembly, const TimeStepping& options, const StepNeeds& needs);
+  /// \param any_iterated whether the loads of any component of the model change
+  SweepSchedule(const Assembly& assembly, const TimeStepping& options, bool any_iterated);
 
-  /// Coupling of a component.
-  [[nodiscard]] CouplingClass coupling(Index component) const { return coupling_[component]; }
-  /// Components that a step takes in one loop, in their order: batches of uncoupled bodies whose loads are
-  /// constant; each other component by itself.
-  [[nodiscard]] std::span<const Range> batches() const { return batches_; }
-  /// True if a component is coupled by loads that change.
-  [[nodiscard]] bool any_iterated() const { return any_iterated_; }
   /// True if a sweep that was preceded by so many may be fused with the next.
   [[nodiscard]] bool may_fuse(const SweepStages& stages, int sweeps, int expected) const;
 
@@ -109,8 +96,6 @@ private:
     const Range blocks = stages.blocks();
     workers_.for_each(blocks.size(), [&](Index part) { f(assembly_->blocks()[blocks.begin + part], part); });
   }
-  void classify(const TimeStepping& options, const StepNeeds& needs);
-  void find_batches();
   void evaluate(const SweepStages& stages, LoadsKnown asked, bool with_changes, BlockTask first);
   [[nodiscard]] SweepChange largest(const std::vector<SweepChange>& changes, const SweepStages& stages) const;
   LocalSweeps presolve_around_contacts(const SweepStages& stages, double tolerance);
@@ -120,9 +105,7 @@ private:
   const Assembly* assembly_;
   Index threads_;
   Workers workers_;
-  std::vector<CouplingClass> coupling_;  // by component
-  bool any_iterated_ = false;
-  std::vector<Range> batches_;
+  bool any_iterated_;
   std::vector<SweepChange> changes_, earlier_changes_;  // by block of a component; of the sweep before
   enum Local : std::uint8_t { untouched, guessed, swept };
   std::vector<std::uint8_t> local_;  // by block of a component: Local, of presolve()

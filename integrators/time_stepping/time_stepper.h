@@ -22,14 +22,12 @@
 #include <carom/integrators/run/step_report.h>
 #include <carom/integrators/run/stop_request.h>
 #include <carom/integrators/run/time_stepping.h>
-#include <carom/integrators/time_stepping/capped_problem.h>
 #include <carom/integrators/time_stepping/contact_turning.h>
-#include <carom/integrators/time_stepping/coupling_watch.h>
-#include <carom/integrators/time_stepping/island_iteration.h>
-#include <carom/integrators/time_stepping/step_balance.h>
+#include <carom/integrators/time_stepping/island_steps.h>
+#include <carom/integrators/time_stepping/step_constraints.h>
 #include <carom/integrators/time_stepping/step_impacts.h>
-#include <carom/integrators/time_stepping/step_parts.h>
-#include <carom/integrators/time_stepping/step_projection.h>
+#include <carom/integrators/time_stepping/step_model.h>
+#include <carom/integrators/time_stepping/step_trial.h>
 #include <carom/integrators/time_stepping/uncoupled_step.h>
 
 #include <memory>
@@ -53,9 +51,9 @@ public:
             const StepPart& part = {});
 
   /// Options.
-  [[nodiscard]] const TimeStepping& options() const { return parts_.options; }
+  [[nodiscard]] const TimeStepping& options() const { return model_.options; }
   /// True if a step is to end where contacts close, so that its rest begins with the impact (set_phases.h).
-  [[nodiscard]] bool ends_at_closings() const { return parts_.ends_at_closings(); }
+  [[nodiscard]] bool ends_at_closings() const { return model_.ends_at_closings; }
   /// How the last step was made.
   struct LastStep {
     int passes;                           ///< how often: again where contacts turn in it (contact_turning.h)
@@ -68,54 +66,42 @@ public:
   /// The last step. Valid until the next one.
   [[nodiscard]] LastStep last() {
     return {passes_,
-            parts_.trial.end,
+            trial_.end,
             struck_ ? &impacts_->start() : nullptr,
-            parts_.constraints.islands(),
-            &parts_.flights,
-            &projection_};
+            constraints_.islands(),
+            &islands_.books().flights(),
+            &islands_.projection()};
   }
   /// All components, batch by batch.
-  [[nodiscard]] std::span<const Range> batches() const { return parts_.schedule.batches(); }
+  [[nodiscard]] std::span<const Range> batches() const { return model_.batches.all(); }
   /// Names of contacts.
-  [[nodiscard]] const Detector& detector() const { return parts_.constraints.detector(); }
+  [[nodiscard]] const Detector& detector() const { return model_.detector; }
 
 private:
-  [[nodiscard]] StepResult* make_step(const StepInput& in);
-  [[nodiscard]] StepResult& make_uncoupled_step(const StepInput& in);
-  void advance_loose(std::span<const LooseBodies> pieces, const StepInput& in);
+  void evaluate_start(const StepInput& in, Companion& companion);
   [[nodiscard]] bool step_from(const StepInput& in, State& state, Companion& companion, StepReport& report);
   [[nodiscard]] bool strike(const StepInput& in);
+  [[nodiscard]] bool make_step(const StepInput& in);
   void give_up(const StepInput& in, Companion& companion);
   void prepare(const StepInput& in);
   void advance_all(const StepInput& in);
-  void advance(const StepIsland& island, const StepInput& in);
-  void iterate_automatically(const StepIsland& island, const StepInput& in, FixedPointJudge& judge);
-  void advance_under_constant_loads(const StepIsland& island, const StepInput& in);
-  void advance_part_by_part(const StepIsland& island, const StepInput& in);
-  void solve_part(const StepIsland& part, const StepInput& in);
-  void book_part(const StepInput& in);
-  void book_located(Range bodies, const StepInput& in);
-  void book(const StepIsland& island, const StepInput& in, LoadsKnown known);
-  void book_contacts(const StepIsland& island, const StepInput& in);
-  void book_contact_problem(const IslandProblem& problem, const double* after, double time,
-                            const StepInput& in);
+  [[nodiscard]] std::span<const Range> batches_of(const StepInput& in) const {
+    return model_.batches.of(in.part.scope);
+  }
 
-  StepParts parts_;
+  StepConstraints constraints_;
+  StepModel model_;
+  StepTrial trial_;
+  IslandSteps islands_;
   std::unique_ptr<StepImpacts> impacts_;  // null where all impacts are those of the step
   std::unique_ptr<ContactTurning>
-      turning_;                // null where contacts act along their rows at the start of a step
-  int passes_ = 1;             // of the last step
-  bool struck_ = false;        // there were impacts at the start of the step at hand
-  PresentLoads loads_before_;  // these
-  PrescribedJoints prescribed_;
-  IslandIteration iteration_;
-  StepBalance balance_;
-  StepMemory memory_;
-  StepProjection projection_;
-  CouplingWatch couplings_;
-  CappedProblem capped_;
+      turning_;                             // null where contacts act along their rows at the start of a step
   std::optional<UncoupledStep> uncoupled_;  // none where no step is one
-  Flight flown_ = Flight::not_free;         // of the step at hand
+  PrescribedJoints prescribed_;
+  int passes_ = 1;                   // of the last step
+  bool struck_ = false;              // there were impacts at the start of the step at hand
+  PresentLoads loads_before_;        // these
+  Flight flown_ = Flight::not_free;  // of the step at hand
 };
 
 }  // namespace carom

@@ -3,6 +3,7 @@
 
 #include <carom/core/numerics/compensated_sum.h>
 #include <carom/integrators/time_stepping/step_commit.h>
+#include <carom/integrators/time_stepping/sweep_schedule.h>
 #include <carom/integrators/time_stepping/uncoupled_step.h>
 
 #include <algorithm>
@@ -55,34 +56,38 @@ double work_of(const StepInput& in, const StepRule& rule, std::span<LooseBatch> 
 
 }  // namespace
 
-bool UncoupledStep::fits(const StepParts& parts) {
+bool UncoupledStep::fits(const StepModel& model) {
   const auto is_small = [&](Range batch) {
-    const Range bodies = parts.assembly->bodies_of(batch);
-    const BodySlots& slots = parts.assembly->layout()->bodies();
+    const Range bodies = model.assembly.bodies_of(batch);
+    const BodySlots& slots = model.assembly.layout()->bodies();
     return bodies.size() <= BlockTable::block_size &&
            slots[bodies.begin].kind == slots[bodies.end - 1].kind && (batch.size() > 1 || bodies.size() == 1);
   };
-  const auto& batches = parts.schedule.batches();
-  return !parts.schedule.any_iterated() && centres_tell(parts.constraints.detector()) &&
+  const std::span<const Range> batches = model.batches.all();
+  return !model.batches.any_iterated() && centres_tell(model.detector) &&
          std::all_of(batches.begin(), batches.end(), is_small);
 }
 
-UncoupledStep::UncoupledStep(StepParts& parts)
-    : parts_(&parts), rows_(parts.constraints.detector().points().centre_rows(parts.constraints.margin())) {
-  for (const Range batch : parts.schedule.batches()) {
+UncoupledStep::UncoupledStep(const StepModel& model, const ContactStage& contacts, StepTrial& trial,
+                             double margin)
+    : model_(&model),
+      contacts_(&contacts),
+      trial_(&trial),
+      rows_(model.detector.points().centre_rows(margin)) {
+  for (const Range batch : model.batches.all()) {
     // As in every step: components that are taken in one loop are swept.
-    const bool alone = batch.size() == 1 && parts.options.iteration != Iteration::automatic;
-    if (alone) iteration_ = parts.options.iteration;
+    const bool alone = batch.size() == 1 && model.options.iteration != Iteration::automatic;
+    if (alone) iteration_ = model.options.iteration;
     add_batch(batch);
   }
 }
 
 void UncoupledStep::add_batch(Range components) {
-  const Assembly& assembly = *parts_->assembly;
+  const Assembly& assembly = model_->assembly;
   const Index component = components.begin;
   const Range bodies = assembly.bodies_of(components);
   const auto& all = assembly.components();
-  const StepTrial& trial = parts_->trial;
+  const StepTrial& trial = *trial_;
   const Range together = components.size() > 1 ? bodies : Range{};
   const auto loose = [&](Range some) {
     LooseBodies found{some, assembly.bodies_of(some)};
@@ -109,32 +114,31 @@ void UncoupledStep::add_batch(Range components) {
 }
 
 void UncoupledStep::move(const StepInput& in, const LooseBodies& bodies) const {
-  const std::span<const Index> struck = parts_->contacts.struck(bodies.bodies);
+  const std::span<const Index> struck = contacts_->struck(bodies.bodies);
   const bool all = struck.size() == bodies.bodies.size();
-  parts_->rule.move_constant(in, bodies.place, bodies.masses, all, parts_->trial);
+  model_->rule.move_constant(in, bodies.place, bodies.masses, all, *trial_);
   if (all) return;
-  for (const Index body : struck) parts_->rule.move_constant(in, {body, body + 1}, true, parts_->trial);
+  for (const Index body : struck) model_->rule.move_constant(in, {body, body + 1}, true, *trial_);
 }
 
 LooseAccount UncoupledStep::account(const StepInput& in, LooseBatch& batch) const {
-  return account_of(in, parts_->rule, batch, parts_->trial);
+  return account_of(in, model_->rule, batch, *trial_);
 }
 
 Flight UncoupledStep::fly(const StepInput& in, State& state, Companion& companion, StepReport& report) {
-  if (!starts_free(in, parts_->constraints.detector(), rows_)) return Flight::not_free;
-  StepTrial& trial = parts_->trial;
+  if (!starts_free(in, model_->detector, rows_)) return Flight::not_free;
+  StepTrial& trial = *trial_;
   trial.end.time = in.end_time;
   for (const LooseBatch& batch : batches_)
-    parts_->rule.move_constant(in, batch.all.place, batch.all.masses, false, trial);
+    model_->rule.move_constant(in, batch.all.place, batch.all.masses, false, trial);
   // Bodies that touch at the end hit within the step.
-  if (parts_->located.on() && !is_free(trial.end, parts_->constraints.detector(), rows_))
-    return Flight::moved;
+  if (model_->follows_bodies && !is_free(trial.end, model_->detector, rows_)) return Flight::moved;
   StoredEnergies stored;
-  const double work = work_of(in, parts_->rule, batches_, trial, stored);
+  const double work = work_of(in, model_->rule, batches_, trial, stored);
   if (!std::isfinite(stored.total())) return Flight::moved;
   const double lost = discretisation_loss(stored.potential(), companion.ledger.potential(), work);
   companion.ledger.book(EnergyFlow::coupling_discretisation, lost, stored);
-  take_end(in, parts_->rule.is_mean(), trial, state, companion);
+  take_end(in, model_->rule.is_mean(), trial, state, companion);
   companion.iterations.clear();
   StepNumbers& numbers = report;
   numbers = {};

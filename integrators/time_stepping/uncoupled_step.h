@@ -11,8 +11,10 @@
 #include <carom/core/export.h>
 #include <carom/core/force_kind.h>
 #include <carom/integrators/run/step_report.h>
+#include <carom/integrators/time_stepping/contact_stage.h>
 #include <carom/integrators/time_stepping/step_input.h>
-#include <carom/integrators/time_stepping/step_parts.h>
+#include <carom/integrators/time_stepping/step_model.h>
+#include <carom/integrators/time_stepping/step_trial.h>
 
 #include <cstdint>
 #include <span>
@@ -65,9 +67,9 @@ class CAROM_API UncoupledStep {
 public:
   /// True if steps of a model and its options may be like that. Impacts are those of the step, and gaps are
   /// not projected: that is for the caller to see.
-  [[nodiscard]] static bool fits(const StepParts& parts);
-  /// \param parts must outlive it, and fit
-  explicit UncoupledStep(StepParts& parts);
+  [[nodiscard]] static bool fits(const StepModel& model);
+  /// All must outlive it, and fit. \param margin gaps that count as closed [m]
+  UncoupledStep(const StepModel& model, const ContactStage& contacts, StepTrial& trial, double margin);
 
   /// Makes the step if nothing has touched in the step before and surely nothing does now; where impacts are
   /// located, nor at its end. Else it changes nothing but the trial, as where the account is not finite.
@@ -85,7 +87,9 @@ public:
 private:
   void add_batch(Range components);
 
-  StepParts* parts_;
+  const StepModel* model_;
+  const ContactStage* contacts_;
+  StepTrial* trial_;
   Iteration iteration_ = Iteration::fixed_point;
   std::vector<CentreRow> rows_;
   std::vector<LooseBatch> batches_;

@@ -183,8 +183,7 @@ System two_pairs(bool one_component) {
 struct HandMadeStep {
   explicit HandMadeStep(System system)
       : assembly(std::move(system)),
-        parts(assembly, options),
-        iteration(parts, nullptr),
+        iteration(model, constraints, schedule, contacts, located, joints, trial, nullptr),
         state(assembly.initial_state()) {
     const std::size_t size = state.v.size();
     companion.rounding.assign(size, 0.0F);
@@ -199,18 +198,24 @@ struct HandMadeStep {
     companion.loads.total = loads.total;
     companion.loads.dissipative = loads.dissipative;
     for (Index c = 0; c < assembly.components().size(); ++c) members.push_back(c);
-    parts.trial.begin(in, companion.history);
+    trial.begin(in, companion.history);
     iteration.use(Iteration::fixed_point);
   }
-  const std::vector<double>& solve(ConstraintSet& constraints) {
+  const std::vector<double>& solve(ConstraintSet& of_island) {
     FixedPointJudge judge(1e-15, 200);
-    static_cast<void>(iteration.solve({members, constraints}, in, judge));
-    return parts.trial.end.v;
+    static_cast<void>(iteration.solve({members, of_island}, in, judge));
+    return trial.end.v;
   }
 
   Assembly assembly;
   TimeStepping options{.step = 1e-3};
-  StepParts parts;
+  StepConstraints constraints{assembly, options};
+  StepModel model{assembly, options, constraints.detector()};
+  StepTrial trial{assembly, model.needs};
+  SweepSchedule schedule{assembly, options, model.batches.any_iterated()};
+  ContactStage contacts{assembly, options};
+  LocatedImpacts located{model};
+  JointStages joints{assembly};
   IslandIteration iteration;
   State state;
   Companion companion;
@@ -229,7 +234,7 @@ TEST(StepIslands, SeveralComponentsAreSolvedAsOne) {
   // Sums of two numbers in the same order, iterated until nothing changes.
   for (std::size_t i = 0; i < v.size(); ++i) {
     EXPECT_NEAR(v[i], expected[i], 1e-14);
-    EXPECT_NEAR(joined.parts.trial.end.q[i], whole.parts.trial.end.q[i], 1e-14);
+    EXPECT_NEAR(joined.trial.end.q[i], whole.trial.end.q[i], 1e-14);
   }
   // Newton's law of impact, and momentum: the impulse acts between the two.
   EXPECT_NEAR(v[4] - v[2], 0.5 * (2.0 + 1.0), 1e-13);
@@ -284,19 +289,19 @@ TEST(StepIslands, ConstraintsAcrossBlocksAreStaged) {
   HandMadeStep step(chain(links));
   ASSERT_GT(step.assembly.components()[0].blocks.size(), 2u);
   const auto state = [&](ConstraintSet& list) {
-    step.parts.contacts.state_problems(step.in, {step.members, list}, false, step.parts.trial);
+    step.contacts.state_problems(step.in, {step.members, list}, false, step.trial);
   };
   ConstraintSet within =
       carom_test::set_of({contact(step.assembly, {1, 0}), contact(step.assembly, {links - 1})});
   state(within);
-  EXPECT_TRUE(step.parts.contacts.by_block());
-  EXPECT_EQ(step.parts.contacts.problems().size(), 2u);
-  EXPECT_FALSE(step.parts.contacts.touches(1));
+  EXPECT_TRUE(step.contacts.by_block());
+  EXPECT_EQ(step.contacts.problems().size(), 2u);
+  EXPECT_FALSE(step.contacts.touches(1));
   ConstraintSet across =
       carom_test::set_of({contact(step.assembly, {0, links - 1}), contact(step.assembly, {7})});
   state(across);
-  EXPECT_FALSE(step.parts.contacts.by_block());
-  EXPECT_TRUE(step.parts.contacts.touches(1));
+  EXPECT_FALSE(step.contacts.by_block());
+  EXPECT_TRUE(step.contacts.touches(1));
   // The last link, at -1 m/s, is hit by nothing; the first, at 3 m/s to the right of it, parts from it: the
   // other way round they meet at 4 m/s.
   across = carom_test::set_of({contact(step.assembly, {links - 1, 0}), contact(step.assembly, {7})});

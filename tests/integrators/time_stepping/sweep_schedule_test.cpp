@@ -3,6 +3,7 @@
 
 #include <carom/carom.h>
 #include <carom/core/assembly.h>
+#include <carom/integrators/time_stepping/step_batches.h>
 #include <carom/integrators/time_stepping/step_constraints.h>
 #include <carom/integrators/time_stepping/sweep_schedule.h>
 
@@ -57,7 +58,8 @@ public:
         constraints_(assembly_, options_),
         contacts_(assembly_, {}),
         trial_(assembly_, step_needs(assembly_, constraints_.detector(), false)),
-        schedule_(assembly_, options_, trial_.needs),
+        batches_(assembly_, options_, trial_.needs.load_rotations),
+        schedule_(assembly_, options_, batches_.any_iterated()),
         state_(assembly_.initial_state()) {
     const std::size_t size = state_.v.size();
     companion_.rounding.assign(size, 0.0F);
@@ -69,7 +71,7 @@ public:
         {companion_.loads.total.data(), companion_.loads.dissipative.data(), companion_.loads.total.data()});
     for (std::size_t i = 0; i < size; ++i) companion_.loads.total[i] += companion_.loads.dissipative[i];
     trial_.begin(in_, companion_.history);
-    constraints_.find(in_, schedule_.batches(), trial_);
+    constraints_.find(in_, batches_.all(), trial_);
     contacts_.state_problems(in_, constraints_.islands().front(), false, trial_);
   }
   [[nodiscard]] SweepStages stages() { return {in_, rule_, 0, contacts_, trial_}; }
@@ -87,6 +89,7 @@ public:
   ContactStage contacts_;
   StepRule rule_{ForceRule::trapezoidal};
   StepTrial trial_;
+  StepBatches batches_;
   SweepSchedule schedule_;
   State state_;
   Companion companion_;

@@ -53,7 +53,9 @@ System scene(Path path, double gravity = 9.81, double rolling_resistance = 0.0) 
 
 bool fits(const System& system, const TimeStepping& mode) {
   const Assembly assembly(system);
-  return UncoupledStep::fits(StepParts(assembly, mode));
+  const Detector detector(assembly);
+  const StepModel model(assembly, mode, detector);
+  return UncoupledStep::fits(model);
 }
 
 TEST(UncoupledStep, FitsFewUncoupledBodiesUnderConstantLoads) {
