@@ -126,6 +126,7 @@ void ContactTurning::predict(const StepInput& in, StepTrial& trial, std::span<co
   // In the plane coordinates and velocities correspond one to one.
   for (std::size_t i = 0; i < end_.q.size(); ++i) end_.q[i] += in.step * end_.v[i];
   static_cast<void>(turn_along(in, trial, islands));
+  convergence_.begin_at(in.start.v);
 }
 
 /// Brings the constraints to the path from the start of the step to `end_`. True if any turns.

@@ -21,6 +21,12 @@ void PassConvergence::begin() {
   contraction_ = 0.0;
 }
 
+void PassConvergence::begin_at(const std::vector<double>& velocities) {
+  begin();
+  last_.assign(velocities.begin(), velocities.end());
+  passes_ = 1;
+}
+
 bool PassConvergence::has_converged(const StepTrial& trial, double tolerance, double residual) {
   const std::vector<double>& v = trial.end.v;
   double size = 0.0;

@@ -17,8 +17,10 @@ class CAROM_API PassConvergence {
 public:
   explicit PassConvergence(const Assembly& assembly) : lengths_(assembly.length_scales()) {}
 
-  /// Begins a step.
+  /// Begins a step, of whose path nothing is known.
   void begin();
+  /// Begins a step whose first pass has the rows of the path that some velocities at its end would lead to.
+  void begin_at(const std::vector<double>& velocities);
   /// True if further passes are of no use: they would change velocities by no more than a tolerance, as the
   /// ratio of the last changes tells; or the last pass has changed them by no more than rounding and errors
   /// of the answers, or by no less than the one before. \param trial with the end of a pass \param tolerance

@@ -3,9 +3,9 @@
 #include <carom/core/numerics/never.h>
 #include <carom/core/run_error.h>
 #include <carom/integrators/time_stepping/added_reports.h>
+#include <carom/integrators/time_stepping/phase_ends.h>
 #include <carom/integrators/time_stepping/set_phases.h>
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -32,32 +32,6 @@ std::unique_ptr<StepClosings> make_closings(const Assembly& assembly, const Time
   auto closings = std::make_unique<StepClosings>(assembly, stepper.detector(), stepper.options(), contacts);
   return closings->finds_any() ? std::move(closings) : nullptr;
 }
-
-/// The end of a phase that is looked for: between an end at which all is open, and one at which it is not.
-struct EndBracket {
-  double open, closed = never;
-  double width = never;  // when it was halved last
-  int idle = 0;          // ends that were tried since
-
-  /// A time, or the middle where that is not between `open` and an end.
-  [[nodiscard]] double between(double time, double end) const {
-    return time > open && time < end ? time : 0.5 * (open + end);
-  }
-  /// The end that is to be tried next. What is found may lie just before each end that is tried: then the
-  /// bracket is halved. \param wanted by Newton's method \param last the latest allowed
-  double next(double wanted, double last) {
-    constexpr int most_idle = 5;
-    const double end = std::min(closed, last);
-    const bool shrinks = end - open <= 0.5 * width;
-    idle = shrinks ? 0 : idle + 1;
-    if (shrinks) width = end - open;
-    if (wanted >= last && closed > last) return last;
-    if (idle <= most_idle && wanted > open && wanted < end) return wanted;
-    idle = 0;
-    const double middle = 0.5 * (open + end);
-    return middle > open && middle < end ? middle : end;
-  }
-};
 
 }  // namespace
 
@@ -175,27 +149,25 @@ bool SetPhases::is_followed(const StepClosing& closing) const {
   return closing.is_passage || stepper_->last().flights->follow(closing.pair.pair);
 }
 
-/// A phase up to the end of the step, or to the first closing: the root of a gap over the length of the
-/// phase, by Newton's method, kept between an end at which all is open and one at which it is not. What would
-/// leave a thing on its far side by the end of a phase is in it at an earlier end. \param first closing on
-/// the way to the end of the step, where that was tried; null: it is to be tried
+/// A phase up to the end of the step, or to the first closing. What would leave a thing on its far side by
+/// the end of a phase is in it at an earlier end. \param first closing on the way to the end of the step,
+/// where that was tried; null: it is to be tried
 void SetPhases::make_phase(const WholeStep& whole, const StepClosing* first) {
   constexpr int most_tries = 1000;
-  const double begin = start_->time;
   closings_->begin_phase();
   const bool searches = counts_ && hits_ == Hits::end_phases && phases_ < most_hits();
-  EndBracket ends{.open = begin};
+  PhaseEnds ends(start_->time, whole.end);
   double end = whole.end;
   StepClosing found;  // the one that is headed for
   const auto closes = [&](const SweptPair& pair) { return searches && !counts_->is_given_up(pair.key); };
   const auto stops = [&](const State& at, const ContactModes& modes) {
     found = closings_->first(way_to(at, modes), closes);
-    if (found.time < end) end = ends.between(found.time, whole.end);
+    if (found.time < end) end = ends.between(found.time);
     return found.time < never;
   };
   if (first != nullptr) {
     found = *first;
-    end = ends.between(found.time, whole.end);
+    end = ends.between(found.time);
   }
   bool may_stop = first == nullptr;
   for (int tries = 0;; ++tries) {
@@ -206,19 +178,23 @@ void SetPhases::make_phase(const WholeStep& whole, const StepClosing* first) {
     const StepClosing now = closings_->first(way(), closes);
     const bool is_late = now.time < end;
     if (is_late) found = now;
-    (is_late ? ends.closed : ends.open) = end;
-    // A body may be hit on one way and not on another that is hardly longer.
-    if (is_late && is_followed(now) && !(now.time > ends.open)) ends.open = begin;
-    const bool heads_for_contact = !is_late && end < whole.end && !is_followed(found);
+    const bool heads_for_contact = end < whole.end && !is_followed(found);
     if (heads_for_contact) closings_->look_at_end(found);
-    if (heads_for_contact && found.is_refuted()) {
+    ends.take(heads_for_contact ? EndGap{found.pair.pair, end, found.gap, found.rate} : EndGap{}, end,
+              is_late);
+    // A body may be hit on one way and not on another that is hardly longer.
+    if (is_late && is_followed(now) && !(now.time > ends.open())) ends.reopen();
+    if (heads_for_contact && !is_late && found.is_refuted()) {
       closings_->refute(found.pair.pair);
-      ends = {.open = begin};
+      ends.restart();
       end = whole.end;
       continue;
     }
+    const bool ends_late = heads_for_contact && ends.are_as_near_as_can_be(found);
+    if (ends_late && is_late) break;
     if (!is_late && (end == whole.end || found.is_reached() || is_followed(found))) break;
-    const double next = ends.next(is_late ? now.time : found.time_by_rate(end), whole.end);
+    const double guess = is_late ? now.time : found.time_by_rate(end);
+    const double next = ends_late ? ends.closed() : ends.next(found, guess);
     if (next == end) break;  // as near as times can be told apart
     end = next;
   }
