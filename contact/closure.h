@@ -19,7 +19,7 @@
 
 namespace carom {
 
-/// What is to be closed, and where it stands.
+/// Gaps that are to be closed, and where bodies stand.
 struct ClosureInput {
   const Assembly& assembly;
   std::span<const Index> components;          ///< components that may move, ascending
@@ -29,7 +29,7 @@ struct ClosureInput {
   const double* force = nullptr;              ///< loads over all velocities at the state [N, N m]
 };
 
-/// What a closure changed.
+/// The changes that a closure has made.
 struct Closure {
   bool changed = false;  ///< true if anything has changed
   /// Energy taken out [J]; the potential changes by minus the work of its forces, to first order: the rest is

@@ -54,8 +54,8 @@ struct IslandStart {
   /// They start from the answer to the last problem instead, in its modes: if its constraints stood where
   /// these do, are several, and have as many rows.
   bool from_answer = false;
-  /// What solves the problem is kept for the next one that starts from its answer: some n^2 numbers for n
-  /// rows.
+  /// Factors that solve the problem are kept for the next one that starts from its answer: some n^2 numbers
+  /// for n rows.
   bool keeps_equations = false;
 };
 

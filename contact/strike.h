@@ -42,13 +42,13 @@ CAROM_API void keep_fastest(ConstraintSet& constraints, const double* velocities
 [[nodiscard]] CAROM_API double limit_gain(const IslandProblem& problem, std::span<Constraint> constraints,
                                           FunctionRef<bool()> solve);
 
-/// What of an impact depends on the mode; options say the rest (ImpactRules).
+/// The part of the rules of an impact that depends on the mode; options say the rest (ImpactRules).
 struct ImpactsOfMode {
   /// Friction in joints takes part where its bound follows joint forces, which are impulsive then; friction
   /// of a constant bound has no impulse. False: no friction in joints takes part.
   bool with_joint_friction = false;
-  /// What approaches no faster than the capture speed is closed, without restitution. False: it is no impact,
-  /// and left to the step that follows.
+  /// Contacts that approach no faster than the capture speed are closed, without restitution. False: it is no
+  /// impact, and left to the step that follows.
   bool closes_slow = false;
 };
 
@@ -62,16 +62,16 @@ inline constexpr ImpactsOfMode impacts_of_events{.with_joint_friction = true, .c
 [[nodiscard]] CAROM_API bool takes_part(const Constraint& constraint, const ImpactsOfMode& of_mode,
                                         bool follows_joint_force);
 
-/// What an approach begins.
+/// The kind of impact that an approach begins.
 enum class ImpactOnset : std::uint8_t {
   nothing,  ///< it is rounding, or left to the step
   impact,   ///< with restitution
   closing   ///< without: it is slow
 };
 
-/// What contacts begin that touch each other. \param fastest approach of them [m/s] \param noise speeds up
-/// to this are rounding [m/s] \param capture_speed what is no faster does not rebound [m/s] \param struck
-/// impacts of their sequence before: one that has begun goes on, however slow
+/// The kind of impact that contacts begin which touch each other. \param fastest approach of them [m/s]
+/// \param noise speeds up to this are rounding [m/s] \param capture_speed what is no faster does not rebound
+/// [m/s] \param struck impacts of their sequence before: one that has begun goes on, however slow
 [[nodiscard]] CAROM_API ImpactOnset onset_of(double fastest, double noise, double capture_speed, int struck,
                                              const ImpactsOfMode& of_mode);
 
@@ -92,7 +92,7 @@ struct StrikeAnswer {
   bool is_solved = false;
 };
 
-/// What became of an impact.
+/// The outcome of an impact.
 struct Struck {
   enum class Outcome : std::uint8_t {
     solved,

@@ -16,7 +16,7 @@
 
 namespace carom {
 
-/// What System::check() found, a line each: "contact without a law: ...".
+/// Findings of System::check(), a line each: "contact without a law: ...".
 [[nodiscard]] std::vector<std::string> finding_lines(std::span<const ModelFinding> findings);
 
 /// Writes a gain of energy by an impact, and contacts with several solutions, as warnings. \param detector of

@@ -81,7 +81,7 @@ void ModeMachines::advance_unseen(const Run& run, double limit) {
 }
 
 /// After a failure: goes by intervals as far as the motion was good, where somebody who looks would stand.
-/// What failed is not tried again: a function of the user that throws once would be lost.
+/// A call that failed is not tried again: a function of the user that throws once would be lost.
 void ModeMachines::advance_while_good(const Run& run, double limit) {
   const double good = driver->good_until();
   const StepGrid grid(run.mode);

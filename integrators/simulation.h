@@ -159,7 +159,7 @@ public:
   /// (every()) must be the same. Throws FileError for a file that cannot be read or is of another model; the
   /// simulation is then unchanged.
   void load(const std::string& path);
-  /// What save() writes, as bytes.
+  /// The bytes that save() writes.
   [[nodiscard]] std::string checkpoint() const;
   /// Loads what checkpoint() gave, as load() does a file. Throws FileError.
   void restore(std::string_view checkpoint);

@@ -28,7 +28,7 @@ namespace carom {
 /// neighbours cover one each: the corner meets nothing.
 enum class HiddenSide : std::uint8_t { neither, before, behind, both };
 
-/// What two neighbours hide together, whichever comes first.
+/// Sides that two neighbours hide together, whichever comes first.
 [[nodiscard]] inline HiddenSide hidden_by_both(HiddenSide one, HiddenSide other) {
   if (one == HiddenSide::neither || one == other) return other;
   return other == HiddenSide::neither ? one : HiddenSide::both;
@@ -90,10 +90,10 @@ struct CommonCone {
   [[nodiscard]] bool is_of_one() const { return lower.is_of_a == upper.is_of_a; }
 };
 
-/// What the normal cones of two corners have in common. Nothing where that is no more than one direction, as
-/// of edges that lie on each other, or all but a half circle, as of a point and the end of a segment: its two
-/// sides push across it only. Nothing either where a neighbour covers a side of one: such a corner has the
-/// normal of its other edge.
+/// Directions that the normal cones of two corners have in common. None where that is no more than one
+/// direction, as of edges that lie on each other, or all but a half circle, as of a point and the end of a
+/// segment: its two sides push across it only. Nothing either where a neighbour covers a side of one: such a
+/// corner has the normal of its other edge.
 [[nodiscard]] CAROM_API std::optional<CommonCone> common_cone(const SharpCorner& a, const SharpCorner& b);
 
 /// The gap of two corners along one end of their common cone, of the corner of one outline and an edge of the

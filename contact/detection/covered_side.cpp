@@ -36,7 +36,7 @@ bool goes_on_in(const ConvexOutline& neighbour, const Vec<2>& corner, const Vec<
     is_in_line = std::abs(face.height(corner)) <= lengths.corner && normal.dot(outwards) > 0.0 &&
                  std::abs(normal.dot(open)) <= in_line;
   }
-  // What sinks deeper does not touch a top.
+  // A body that sinks deeper does not touch a top.
   const double deep = lengths.sunk();
   return is_in_line && height_over(neighbour, corner - deep * open) <= lengths.corner &&
          height_over(neighbour, corner + deep * side) <= lengths.corner;

@@ -22,7 +22,7 @@
 
 namespace carom {
 
-/// What all pieces together say of the outline of one of them.
+/// The outline of one piece, as all pieces together leave it.
 class DrawnOutline {
 public:
   /// \param sides of all pieces, and `followers` of each \param solids all pieces \param of the piece at hand

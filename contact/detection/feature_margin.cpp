@@ -55,7 +55,7 @@ Index FeatureRegions::nearest() const {
   const PlacedOutline point(ConvexOutline{{&place_, 1}, 0.0});
   const GapPoint found = nearest_gap(point, chain_ ? PlacedOutline(*chain_) : PlacedOutline(outline_));
   const Index feature = found.feature_b;
-  // What is below the ground is not in it.
+  // A feature that is below the ground is not in it.
   const double distance = chain_ && chain_->is_below(feature, found.gap) ? -found.gap : found.gap;
   if (!sharp_ || !has_several()) return feature;
   if (hidden_ != HiddenSide::neither || hidden_of_vertex_ != HiddenSide::neither)

@@ -86,9 +86,9 @@ struct ClosingRule {
   double contradiction = 0.0;
 };
 
-/// What is found where a closing was predicted.
+/// The gap that is found where a closing was predicted.
 struct ClosingRoot {
-  /// What that is.
+  /// The kind of place that was found.
   enum class Kind : std::uint8_t {
     closes,    ///< the gap reaches the level and falls
     touches,   ///< the gap reaches the level, but does not fall

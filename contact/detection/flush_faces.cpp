@@ -46,8 +46,8 @@ public:
 private:
   using Form = GroundPiece::Form;
 
-  // What others cover, and what follows. \returns by shape, whether a face of it goes on in another piece;
-  // nothing if none does
+  // Sides that others cover, and neighbours that follow. \returns by shape, whether a face of it goes on in
+  // another piece; nothing if none does
   std::vector<bool> find() {
     if (sides_.empty() || pieces_ < 2) return {};
     build_grids();
@@ -108,7 +108,7 @@ private:
     for (Index i = 0; i < n; ++i) {
       PieceSide side = side_of(shape, piece.points[i], piece.points[(i + 1) % n]);
       side.next = {first + (i + n - 1) % n, first + (i + 1) % n};
-      // What is deeper than the middle is nearer to another side.
+      // A point that is deeper than the middle is nearer to another side.
       side.depth = 0.0;
       for (const Vec<2>& point : piece.points) side.depth = std::max(side.depth, -0.5 * side.height(point));
       solid.lines.push_back({side.ends[0], side.along});

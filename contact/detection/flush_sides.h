@@ -49,7 +49,7 @@ struct PieceSide {
   [[nodiscard]] Vec<2> normal() const { return {along[1], -along[0]}; }
 };
 
-/// What follows at an end of a side.
+/// The neighbour that follows at an end of a side.
 struct SideFollower {
   Index side = none;              ///< `none`: a line, or nothing
   bool is_foreign = false;        ///< it is of another piece
@@ -58,7 +58,7 @@ struct SideFollower {
   Vec<2> along = Vec<2>::Zero();  ///< unit vector
 };
 
-/// What follows at the tail and at the head of a side.
+/// The neighbours that follow at the tail and at the head of a side.
 using SideFollowers = std::array<SideFollower, 2>;
 
 /// True where a face of another piece follows in one line, or turning to the free side.

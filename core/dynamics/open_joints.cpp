@@ -100,7 +100,7 @@ Place in_frame(const Layout& layout, BodyId body, const JointView& at, const Pla
           0.0};
 }
 
-/// What the error says of a joint that is far open; empty of any other.
+/// The words of the error on a joint that is far open; empty for any other.
 std::string far_text(const Assembly& assembly, JointId joint, std::size_t first_row,
                      const JointConstraints& joints, const JointView& at,
                      const std::vector<double>& lengths) {

@@ -15,7 +15,7 @@ namespace carom {
 
 namespace {
 
-// What joints leave of the response of bodies along a row is rounding below this part of it.
+// The response of bodies along a row that joints leave is rounding below this part of it.
 constexpr double held_fast = 1e-12;
 // Rounding of what is looked at a moment later, against the speeds then.
 constexpr double rounding_ahead = 1e-9;

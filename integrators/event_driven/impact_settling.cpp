@@ -19,7 +19,7 @@ bool ImpactSettling::settle(std::span<const Index> pairs, EventInstant& at, Solv
   for (Constraint& contact : touching_) contact.of_joint.friction_bound *= time;  // of friction in a joint
   if (!solve_ahead(time, touching_, at, ahead_, problem_, chain) || !close(pairs, at)) return false;
   limit.count(at.time, time);
-  // What is left of sliding is slower than constraints can tell: it counts as stopped.
+  // Sliding that is left is slower than constraints can tell: it counts as stopped.
   for (const ActiveContact& held : held_) {
     if (held.sticks()) at.stopped.push_back(held.place);
   }

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What an advance of clock groups has reached, for somebody who may interrupt it.
+/// The end that an advance of clock groups has reached, for somebody who may interrupt it.
 
 #include <carom/contact/solvers/chain_statistics.h>
 #include <carom/core/export.h>

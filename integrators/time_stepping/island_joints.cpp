@@ -9,7 +9,7 @@ namespace carom {
 
 namespace {
 
-/// What touches an island whose problem is given.
+/// The kind of touch of an island whose problem is given.
 JointsTouch touch_of(const IslandContact& contact) {
   if (contact.problem == nullptr) return JointsTouch::nothing;
   const bool struck = std::any_of(contact.constraints.begin(), contact.constraints.end(),

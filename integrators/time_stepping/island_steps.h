@@ -47,7 +47,7 @@ public:
   [[nodiscard]] IslandBooks& books() { return books_; }
   /// How the components of the step were iterated.
   [[nodiscard]] StepMemory& memory();
-  /// What has moved bodies at the end of the step.
+  /// The stage that has moved bodies out of others at the end of the step.
   [[nodiscard]] StepProjection& projection() { return projection_; }
   /// Contact.
   [[nodiscard]] ContactStage& contacts() { return contacts_; }

@@ -54,7 +54,7 @@
 
 namespace carom {
 
-/// What touches the bodies of an island in a step.
+/// The kind of touch of the bodies of an island in a step.
 enum class JointsTouch : std::uint8_t {
   nothing,   ///< neither
   friction,  ///< friction in joints alone

@@ -4,10 +4,10 @@
 /// How deep a pair may come on the way of a step: less deep than it takes to leave the other thing on its far
 /// side (OverlapRules::never_tunnel; TimeStepping::impacts).
 ///
-/// What passes through a thing is in it for at least the radii of the largest circles in both. An eighth of
-/// these is as deep as it may come. Ground without a far side (the outside of a box or of a circle, terrain
-/// of any depth) cannot be left, but a step may end far in it: it counts with none, so that how deep a body
-/// may come depends on the body alone.
+/// A body that passes through a thing is in it for at least the radii of the largest circles in both. An
+/// eighth of these is as deep as it may come. Ground without a far side (the outside of a box or of a circle,
+/// terrain of any depth) cannot be left, but a step may end far in it: it counts with none, so that how deep
+/// a body may come depends on the body alone.
 
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/detection/swept_pairs.h>

@@ -79,8 +79,8 @@ public:
 
   /// Begins a step, in which no ground shape jumps.
   void begin(const StepInput& in);
-  /// What is booked from now on has jumps of the velocities of ground shapes in it: impulses act behind them,
-  /// against the velocities that they lead to. \param jumps must outlive their use
+  /// Impulses that are booked from now on have jumps of the velocities of ground shapes in them: they act
+  /// behind them, against the velocities that they lead to. \param jumps must outlive their use
   void use_jumps(std::span<const GroundJump> jumps) { jumps_ = jumps; }
   /// Books what elements did: works and energies of the last iterate. False if one is not finite.
   [[nodiscard]] bool book_couplings(const StepInput& in, Index component, const StepTrial& trial);

@@ -52,7 +52,7 @@ std::string StepErrors::tell_joints(const FailedIsland& island, SolverFailure& f
   return "; of the joints " + failure.parts.back() + " is violated most, by " + to_text(largest);
 }
 
-/// What lets an iteration fail although the derivatives of the loads say that it contracts.
+/// The reason why an iteration fails although the derivatives of the loads say that it contracts.
 std::string StepErrors::tell_jumps(const FailedIsland& island, SolverFailure& failure) const {
   std::string message = "a force jumps or stiffens";
   for (const Index component : island.components) {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// What follows from the model and the options of a run, the same in all its steps.
+/// Decisions that follow from the model and the options of a run, the same in all its steps.
 
 #include <carom/contact/detection/detector.h>
 #include <carom/contact/island_problem.h>
