@@ -202,17 +202,19 @@ double JointStage::violation(const StepInput& in, StepTrial& trial) {
 }
 
 StrayBody JointStage::find_stray(const StepInput& in, const StepTrial& trial, double tolerance) const {
+  // Chords of a circle leave its arcs by a twelfth of the square of the angle: of some 1.5 rad this part.
+  constexpr double most = 0.2;
   // Of the size of the mechanism, and of the tolerance: what rounding may do at rest.
   constexpr double unseen = 1e-9, tolerances = 10.0;
   StrayBody stray{.back = joints_.largest_displacement(),
                   .way = longest_way(in, joints_.v(), joints_.arrays->lengths, trial.end)};
-  if (!(stray.back > stray.way + tolerances * tolerance)) return stray;
+  if (!(stray.back > most * stray.way + tolerances * tolerance)) return stray;
   if (may_jump(breaks_, in)) return stray;  // rates that jump are no way
   const Assembly& assembly = *joints_.assembly;
   const JointArrays& arrays = *joints_.arrays;
   const Component& all = assembly.components()[joints_.component];
   const double size = size_of(assembly, all.bodies, arrays.lengths, trial.end);
-  if (!(stray.back > stray.way + unseen * size)) return stray;
+  if (!(stray.back > most * stray.way + unseen * size)) return stray;
   for (Index body = all.bodies.begin; body < all.bodies.end; ++body) {
     const BodySlot slot = assembly.layout()->bodies()[body];
     for (Index v = slot.v; v < slot.v + slot.v_size; ++v) {

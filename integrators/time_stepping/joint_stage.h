@@ -98,8 +98,8 @@ public:
   [[nodiscard]] bool looks_ahead() const { return guessed_; }
   /// Distance of positions and velocities from obeying the joints, in units of what rounding lets them.
   [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
-  /// A body that would be moved back onto the joints farther than any goes in the step: what the iteration
-  /// has found is no motion from the start to the end.
+  /// A body that would be moved back onto the joints by a fifth of the longest way in the step: what the
+  /// iteration has found is no motion from the start to the end.
   /// \param tolerance of the iteration, below which nothing is seen [m]
   [[nodiscard]] StrayBody find_stray(const StepInput& in, const StepTrial& trial, double tolerance) const;
   /// Velocities once more near a singular position, where the rounding of positions turns rows too much.

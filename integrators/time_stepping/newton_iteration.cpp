@@ -39,8 +39,7 @@ NewtonIteration::Outcome NewtonIteration::start(const StepInput& in, const StepR
   }
   if (island.contact != nullptr) island.contact->forget_impulses();
   JointStage* const joints = island.joints.of(island.components.front());
-  follows_rows_ = island.components.size() == 1 && joints != nullptr && island.contact == nullptr &&
-                  joints->rows().at_end().factors().is_uneven();
+  follows_rows_ = island.components.size() == 1 && joints != nullptr && island.contact == nullptr;
   if (!linearise(in, island, in.start.view(), trial.at_start)) return Outcome::singular;
   for (const LinearisedComponent& component : linearised_) {
     component.step->add_stiffness_times(rule.is_mean() ? 0.5 * in.step : in.step, in.start.v.data(),

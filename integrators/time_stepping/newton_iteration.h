@@ -11,9 +11,8 @@
 ///
 ///     A d - Gm^T l = w (g - x) + H^T (P' - P),   G (v + d) + rate = 0,   x' = g + (M - A) d / w.
 ///
-/// Where masses are uneven and nothing touches or rubs, reactions L and conditions are linearised too as
-/// their rows turn, and the iterate is (v, L) itself: with R and B of joint_turn.h, at v, its loads g and
-/// rows,
+/// Where nothing touches or rubs, reactions L and conditions are linearised too as their rows turn, and the
+/// iterate is (v, L) itself: with R and B of joint_turn.h, at v, its loads g and rows,
 ///
 ///     (A - R) d - Gm^T l = M (v_free(g) - v) + Gm^T L,   (G + B) d = -(G v + rate),   v' = v + d,   L' = L +
 ///     l.
@@ -62,8 +61,7 @@ public:
   /// bodies it is for the guess alone, which the sweep behind it takes as any other.
   [[nodiscard]] Outcome step(const StepInput& in, const StepRule& rule, const NewtonIsland& island,
                              StepTrial& trial);
-  /// True if steps are made by sweep_untouched(): joints bind bodies of uneven masses, and nothing touches
-  /// or rubs. Where masses are even, rows that turn much between sweeps belong to steps that are too long.
+  /// True if steps are made by sweep_untouched(): joints bind bodies, and nothing touches or rubs.
   [[nodiscard]] bool follows_rows() const { return follows_rows_; }
   /// A sweep of one component where joints bind bodies and nothing touches or rubs.
   [[nodiscard]] Outcome sweep_untouched(const StepInput& in, const StepRule& rule, JointIterate& joints,

@@ -30,7 +30,7 @@ void StepErrors::fail_stray(const StrayBody& stray) const {
   const std::string turn = tell_turn(failure);
   const std::string& body = failure.parts.front();
   fail("joints turn too far within the step" + turn + ": " + body + " would be moved back onto them by " +
-           to_text(stray.back) + " m, where no body goes farther than " + to_text(stray.way) +
+           to_text(stray.back) + " m, although no body goes farther than " + to_text(stray.way) +
            " m; allowed: a step in which they turn less, for instance " + to_text(failure.suggested_step) +
            " s",
        failure);

@@ -168,6 +168,51 @@ TEST(JointsTimeStepping, ProjectsGapsAlongTheJoints) {
   }
 }
 
+/// A link from the origin and a disc pinned to its end, in line, both pulled taut by a spring along that
+/// line; the disc turns a little.
+Scene taut_pair(double link_mass, double stretched) {
+  constexpr double mass = 4.0,
+                   stiffness = 0.5625e6 * mass;  // h^2 k/m = 2.25 at 2 ms: sweeps of loads contract
+  Scene scene;
+  scene.system.add(Gravity{{0.0, -g}});
+  const BodyId link = scene.system.add(RigidBody{.mass = rod(link_mass, 0.1), .position = {0.05, 0.0}});
+  const BodyId body =
+      scene.system.add(RigidBody{.mass = disc(mass, 0.1), .position = {0.2, 0.0}, .spin = 1.0});
+  scene.system.add(Revolute{.from = ground, .to = {link, {-0.05, 0.0}}});
+  scene.system.add(Revolute{.from = {link, {0.05, 0.0}}, .to = {body, {-0.1, 0.0}}});
+  scene.system.add(SpringDamper{
+      .from = {ground, {1.2, 0.0}}, .to = body, .stiffness = stiffness, .free_length = 1.0 - stretched});
+  scene.bodies = {link, body};
+  return scene;
+}
+
+// The pull F turns with the link: a stiffness F/l of the reactions, by which sweeps over their rows do not
+// contract, (w h/2)^2 > 1, although masses are no farther apart than 1 to 20. Nothing touches, so that
+// Newton's method knows how rows turn.
+TEST(JointsTimeStepping, APullThatTurnsWithItsLinkEndsNoStep) {
+  for (const double link_mass : {1.0, 0.5, 0.2}) {
+    for (const double stretched : {0.005, 0.01, 0.02}) {
+      const Scene scene = taut_pair(link_mass, stretched);
+      const std::string what = std::to_string(link_mass) + " kg, " + std::to_string(stretched) + " m";
+      Simulation simulation(scene.system, TimeStepping{.step = 2e-3}),
+          by_newton(scene.system, TimeStepping{.step = 2e-3, .iteration = Iteration::linearly_implicit});
+      JointCheck check(simulation);
+      const double begin = simulation.energy().total();
+      ASSERT_NO_THROW(simulation.run_until(0.5)) << what;
+      ASSERT_NO_THROW(by_newton.run_until(0.5)) << what;
+      EXPECT_GE(simulation.statistics().fallbacks, 1) << what;  // else the scene tests nothing
+      EXPECT_NEAR(simulation.energy().total(), begin, 1e-7 * begin) << what;
+      EXPECT_TRUE(ledger_closes(simulation.energy())) << what;
+      EXPECT_LE(check.gap, gap_limit) << what;
+      EXPECT_LE(check.speed, speed_limit) << what;
+      const std::vector<double> turned = angles(simulation, scene);
+      // It stays taut: F l angle^2/2 is at most what the spin and the weight give, 0.1 J.
+      for (const double angle : turned) EXPECT_LE(std::abs(angle), 0.02) << what;
+      EXPECT_LE(largest_difference(turned, angles(by_newton, scene)), 1e-8) << what;
+    }
+  }
+}
+
 // Ten passages through positions where rows depend on each other and the motion could branch. Steps that end
 // there magnify rounding, and those that have it halfway are of first order: between them, the error is one
 // of second order at most.

@@ -80,7 +80,8 @@ TEST(FarTurns, StepsThatAreMadeAreMotions) {
 TEST(FarTurns, EnergyMomentumKeepsTheEnergyOrRefuses) {
   for (double part = 0.1; part < 1.6; part += 0.05) {
     const Outcomes seen = run(part * unit, ForceRule::energy_momentum);
-    EXPECT_LE(seen.largest_gain, 1e-11) << part;  // what the tolerance leaves
+    // What the tolerance of 1e-12 m leaves, times forces of up to five times the weight.
+    EXPECT_LE(seen.largest_gain, 2e-11) << part;
     if (part < 0.56) {
       EXPECT_EQ(seen.failed, 0) << part << ": " << seen.errors;
     }
