@@ -61,6 +61,10 @@ struct PlanarAnswer {
       std::max(std::max(std::abs(a.p_n), std::abs(a.p_t)), rho * std::max(std::abs(a.b_n), std::abs(a.b_t)));
   // Sums carry a NaN along where maxima may drop it.
   if (!(error_n + error_t + a.p_n + a.p_t + a.b_n + a.b_t < infinity) || !(scale < infinity)) return infinity;
+  // W P and b cancel in xi. Of impulses beyond this nothing of b is left but a few digits: where joints let a
+  // body go along one line, W has a trifle of rounding across it, which would answer anything.
+  constexpr double few_digits = 1e4 * std::numeric_limits<double>::epsilon();
+  if (few_digits * scale > rho * std::max(std::abs(a.b_n), std::abs(a.b_t))) return infinity;
   const double error = std::max(error_n, error_t);
   return error > 0.0 ? error / std::max(scale, least_scale) : 0.0;
 }

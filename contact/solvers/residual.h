@@ -32,6 +32,8 @@ struct Residual {
 /// with C = [0, inf), [lower, upper], [-mu P_n, mu P_n] or the disc of that radius (P_n < 0 counts as 0), the
 /// point coefficient * P_n of a proportional row whatever its xi, and
 /// P* = max(|P|, |b| / trace W_ii) [N s] over the whole problem. 0 where P* = 0.
+/// Infinity for one planar contact whose impulses are so large that of b in W P + b only a few digits are
+/// left.
 ///
 /// `impulse` [N s] and `xi` = W P + b [m/s] have size rows(); the problem is grouped. An immovable group
 /// takes the largest trace of the problem for its own; in a problem without any mobility rho = 1 kg.

@@ -159,6 +159,24 @@ TEST(Residual, ImmovableGroupsAreJudgedByTheMobilityOfTheOthers) {
   EXPECT_EQ(judge(lone_row({}, 0.0, 1.0), {0.0}), 0.0);
 }
 
+// A contact whose body can go along one line only, h, and is pressed across it: no impulse changes that. What
+// rounding leaves of W there is no answer.
+TEST(Residual, AnswersOfOneContactThatRoundingMakesAreNone) {
+  const auto pressed = [](double across, double trifle) {
+    ContactProblem problem;
+    problem.reset(2);
+    problem.w(0, 0) = trifle;
+    problem.w(1, 1) = 1.0;
+    problem.vector()[0] = -across;
+    problem.sets()[1] = {.kind = SetKind::bounded_interval, .bound = 0, .coefficient = 0.5};
+    problem.group();
+    return problem;
+  };
+  EXPECT_EQ(judge(pressed(0.3, 1e-16), {0.3 / 1e-16, 0.0}), infinity);
+  EXPECT_LE(judge(pressed(0.3, 1e-6), {0.3 / 1e-6, 0.0}), 1e-15);  // a light contact answers
+  EXPECT_EQ(judge(pressed(0.0, 1e-16), {0.0, 0.0}), 0.0);
+}
+
 // The unrolled certificate of one planar contact says what the general one says: the same contact once alone,
 // once beside a row that contributes nothing.
 TEST(Residual, OnePlanarContactIsJudgedLikeAnyOther) {
