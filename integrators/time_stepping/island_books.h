@@ -37,10 +37,10 @@ public:
   void begin(const StepInput& in, const StepResult* impacts);
   /// Books loads on a component, and its joints.
   void book_component(const StepInput& in, Index component);
-  /// Books works and energies of bodies whose loads do not change, and are conservative. \param first of
-  /// their components
+  /// Books works and energies of components whose loads do not change, and are conservative, by the account
+  /// of the trial.
   void book_constant(const StepInput& in, Range components);
-  /// Books works and energies of bodies that nothing couples.
+  /// Books works and energies of components that nothing couples, by numbers that are given.
   void book_loads(const StepInput& in, Range components, const BlockWorks& works,
                   const StoredEnergies& potentials);
   /// Books the contacts of an island, and those of its bodies that are hit within the step.
