@@ -48,10 +48,11 @@ void ContactTurning::begin(std::span<const StepIsland> islands, double step, boo
     const std::size_t before = mechanisms_.size();
     if (joints_->any()) list_mechanisms(island);
     const bool answered = mechanisms_.size() > before;
+    const bool any_alone = alone && !has_joints(island);
     for (const Constraint& contact : island.constraints) {
       if (contact.attached) continue;  // spins
       if (!answered && (contact.key.is_of_joint() || !contact.turns(step, negligible_))) continue;
-      if (alone && may_be_followed(contact)) continue;
+      if (any_alone && may_be_followed(contact)) continue;
       turned_.push_back(
           {SingleConstraint(contact), SingleConstraint(contact), contact.surface_velocity_after});
     }
@@ -77,10 +78,15 @@ void ContactTurning::list_mechanisms(const StepIsland& island) {
   }
 }
 
-/// True of a contact of a body that may be followed alone.
+/// True if joints bind bodies of an island: then none is followed by itself.
+bool ContactTurning::has_joints(const StepIsland& island) const {
+  return joints_->any() && std::any_of(island.components.begin(), island.components.end(),
+                                       [this](Index component) { return joints_->of(component) != nullptr; });
+}
+
+/// True of a contact of a body that may be followed alone, in an island without joints.
 bool ContactTurning::may_be_followed(const Constraint& contact) const {
-  return contact.bodies == 1 && !look_.assembly().is_jointed(contact.body()) &&
-         !std::binary_search(shared_.begin(), shared_.end(), contact.body());
+  return contact.bodies == 1 && !std::binary_search(shared_.begin(), shared_.end(), contact.body());
 }
 
 /// Place of a constraint among those that turn; their number if it is none of them.

@@ -208,13 +208,14 @@ StrayBody JointStage::find_stray(const StepInput& in, const StepTrial& trial, do
   constexpr double unseen = 1e-9, tolerances = 10.0;
   StrayBody stray{.back = joints_.largest_displacement(),
                   .way = longest_way(in, joints_.v(), joints_.arrays->lengths, trial.end)};
-  if (!(stray.back > most * stray.way + tolerances * tolerance)) return stray;
+  stray.allowed = most * stray.way;
+  if (!(stray.back > stray.allowed + tolerances * tolerance)) return stray;
   if (may_jump(breaks_, in)) return stray;  // rates that jump are no way
   const Assembly& assembly = *joints_.assembly;
   const JointArrays& arrays = *joints_.arrays;
   const Component& all = assembly.components()[joints_.component];
   const double size = size_of(assembly, all.bodies, arrays.lengths, trial.end);
-  if (!(stray.back > most * stray.way + unseen * size)) return stray;
+  if (!(stray.back > stray.allowed + unseen * size)) return stray;
   for (Index body = all.bodies.begin; body < all.bodies.end; ++body) {
     const BodySlot slot = assembly.layout()->bodies()[body];
     for (Index v = slot.v; v < slot.v + slot.v_size; ++v) {

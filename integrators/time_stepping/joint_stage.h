@@ -61,10 +61,11 @@ enum class JointsTouch : std::uint8_t {
   contact    ///< bodies, ground or stops
 };
 
-/// Where a step has gone astray: how far which body would be moved back, and the longest way of one.
+/// Where a step has gone astray: how far which body would be moved back, how far it may, and the longest way
+/// of one.
 struct StrayBody {
-  BodyId body{};                 ///< not valid: none
-  double back = 0.0, way = 0.0;  ///< [m]
+  BodyId body{};                                ///< not valid: none
+  double back = 0.0, allowed = 0.0, way = 0.0;  ///< [m]
 };
 
 /// Joints of one component. Keeps memory.
@@ -98,9 +99,9 @@ public:
   [[nodiscard]] bool looks_ahead() const { return guessed_; }
   /// Distance of positions and velocities from obeying the joints, in units of what rounding lets them.
   [[nodiscard]] double violation(const StepInput& in, StepTrial& trial);
-  /// A body that would be moved back onto the joints by a fifth of the longest way in the step: what the
-  /// iteration has found is no motion from the start to the end.
-  /// \param tolerance of the iteration, below which nothing is seen [m]
+  /// A body that would be moved back onto the joints by more than a fifth of the longest way in the step:
+  /// what the iteration has found is no motion from the start to the end. \param tolerance of the iteration,
+  /// below which nothing is seen [m]
   [[nodiscard]] StrayBody find_stray(const StepInput& in, const StepTrial& trial, double tolerance) const;
   /// Velocities once more near a singular position, where the rounding of positions turns rows too much.
   void settle_velocities(StepTrial& trial);

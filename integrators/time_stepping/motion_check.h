@@ -11,8 +11,8 @@
 
 namespace carom {
 
-/// Throws SolverError where the bodies of a component would be moved back onto its joints farther than they
-/// go. \param trial the end of the step
+/// Throws SolverError where the bodies of a component would be moved back onto its joints by more than a
+/// fifth of the longest way of one. \param trial the end of the step
 CAROM_API void demand_motion(const JointStage& joints, const StepInput& in, const StepModel& model,
                              StepTrial& trial);
 

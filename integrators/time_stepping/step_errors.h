@@ -50,7 +50,7 @@ public:
   [[noreturn]] void fail_open(JointId joint, double gap) const;
   /// The step has gained energy that nothing explains [J].
   [[noreturn]] void fail_gain(double gain) const;
-  /// Bodies would be moved back onto the joints by more than their way in the step [m].
+  /// Bodies would be moved back onto the joints farther than is allowed [m].
   [[noreturn]] void fail_stray(const StrayBody& stray) const;
   /// A contact problem is not solved.
   [[noreturn]] void fail_contact(const IslandProblem& problem) const;

@@ -29,11 +29,12 @@ void StepErrors::fail_stray(const StrayBody& stray) const {
   failure.parts.push_back(system().name(stray.body));
   const std::string turn = tell_turn(failure);
   const std::string& body = failure.parts.front();
-  fail("joints turn too far within the step" + turn + ": " + body + " would be moved back onto them by " +
-           to_text(stray.back) + " m, although no body goes farther than " + to_text(stray.way) +
-           " m; allowed: a step in which they turn less, for instance " + to_text(failure.suggested_step) +
-           " s",
-       failure);
+  fail(
+      "joints turn too far within the step" + turn + ": " + body + " would be moved back onto them by " +
+          to_text(stray.back) + " m, by more than " + to_text(stray.allowed) +
+          " m, a fifth of the longest way of a body; allowed: a step in which they turn less, for instance " +
+          to_text(failure.suggested_step) + " s",
+      failure);
 }
 
 void StepErrors::fail_open(JointId joint, double gap) const {

@@ -147,7 +147,8 @@ bool TimeStepper::make_step(const StepInput& in) {
   if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
   islands_.projection().lower_rebounds(in, islands, trial_);
   if (turning_ != nullptr) {
-    turning_->begin(islands, in.step, islands_.located().on());
+    const bool follows = islands_.located().on() && model_.options.iteration != Iteration::linearly_implicit;
+    turning_->begin(islands, in.step, follows);
     turning_->predict(in, trial_, islands);
     islands_.contacts().begin_passes(in.part.repeats);
   }
