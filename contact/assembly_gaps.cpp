@@ -34,7 +34,7 @@ void AssemblyGaps::bind(const MovableBodies& bodies, State& state, Evaluation& e
 std::span<Constraint> AssemblyGaps::find(double margin) {
   contacts_.clear();
   const ContactQuery query{state_->view(), *evaluation_, bodies_->places, nullptr, margin};
-  bodies_->detector.find(bodies_->components, query, contacts_);
+  for (const Range components : bodies_->components) bodies_->detector.find(components, query, contacts_);
   if (bodies_->touch) bodies_->detector.find_between_bodies(query, search_, contacts_);
   if (bodies_->all) return contacts_;
   contacts_.remove_if([&](const Constraint& contact) {
@@ -56,25 +56,32 @@ Index AssemblyGaps::first_together(Index body) const {
 
 Range AssemblyGaps::velocities() const {
   const std::vector<Component>& components = bodies_->assembly.components();
-  return {components[bodies_->components.begin].v.begin, components[bodies_->components.end - 1].v.end};
+  return {components[bodies_->components.front().begin].v.begin,
+          components[bodies_->components.back().end - 1].v.end};
 }
 
-/// Rounding of the coordinates; on the closed side a resting body remains in contact.
+/// Coordinates of consecutive components.
+Range AssemblyGaps::coordinates(Range components) const {
+  const std::vector<Component>& all = bodies_->assembly.components();
+  return {all[components.begin].q.begin, all[components.end - 1].q.end};
+}
+
+/// Rounding of the coordinates of what may be moved; on the closed side a resting body remains in contact.
 double AssemblyGaps::rounding() const {
-  const std::vector<Component>& components = bodies_->assembly.components();
-  const Index begin = components[bodies_->components.begin].q.begin;
-  const Index end = components[bodies_->components.end - 1].q.end;
   double size = 1.0;
-  for (Index i = begin; i < end; ++i) size = std::max(size, std::abs(state_->q[i]));
+  for (const Range components : bodies_->components) {
+    const Range q = coordinates(components);
+    for (Index i = q.begin; i < q.end; ++i) size = std::max(size, std::abs(state_->q[i]));
+  }
   return 8.0 * std::numeric_limits<double>::epsilon() * size;
 }
 
 void AssemblyGaps::begin() {
-  const std::vector<Component>& components = bodies_->assembly.components();
-  const Index first = components[bodies_->components.begin].q.begin;
-  const Index end = components[bodies_->components.end - 1].q.end;
   unmoved_.resize(state_->q.size());
-  std::copy(state_->q.begin() + first, state_->q.begin() + end, unmoved_.begin() + first);
+  for (const Range components : bodies_->components) {
+    const Range q = coordinates(components);
+    std::copy(state_->q.begin() + q.begin, state_->q.begin() + q.end, unmoved_.begin() + q.begin);
+  }
 }
 
 void AssemblyGaps::select(Index body) {
@@ -128,8 +135,9 @@ void AssemblyGaps::move(const double* displacement) {
 }
 
 void AssemblyGaps::update() {
-  for (Index component = bodies_->components.begin; component < bodies_->components.end; ++component) {
-    evaluate_positions(bodies_->assembly, component, state_->view(), *evaluation_);
+  for (const Range components : bodies_->components) {
+    for (Index component = components.begin; component < components.end; ++component)
+      evaluate_positions(bodies_->assembly, component, state_->view(), *evaluation_);
   }
 }
 
@@ -163,10 +171,11 @@ Separation separate_all(const Assembly& assembly, const Detector& detector, cons
     append_constraints(assembly, component, joints);
   }
   const std::vector<JointConstraints*> bound = addresses_of(joints);
+  const Range every{0, components};
   gaps.bind({.assembly = assembly,
              .detector = detector,
              .places = places,
-             .components = {0, components},
+             .components = {&every, 1},
              .joints = bound,
              .all = true,
              .touch = detector.bodies_touch()},

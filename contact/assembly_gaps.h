@@ -23,8 +23,8 @@ namespace carom {
 struct MovableBodies {
   const Assembly& assembly;
   const Detector& detector;
-  const GroundPlaces& places;  ///< shapes on ground, at the time of the state
-  Range components;            ///< consecutive; with contacts of bodies all that these may touch
+  const GroundPlaces& places;         ///< shapes on ground, at the time of the state
+  std::span<const Range> components;  ///< ascending; with contacts of bodies all that these may touch
   /// Joints of those components that have some, ascending.
   std::span<JointConstraints* const> joints{};
   std::span<const Constraint> taking_part{};  ///< contacts whose gaps are to be opened
@@ -55,6 +55,7 @@ public:
 
 private:
   void select(Index body);
+  [[nodiscard]] Range coordinates(Range components) const;
 
   std::optional<MovableBodies> bodies_;
   State* state_ = nullptr;

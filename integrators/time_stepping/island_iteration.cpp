@@ -68,9 +68,13 @@ LoadsKnown IslandIteration::iterate(const StepIsland& island, const StepInput& i
       for (const Index component : island.components) {
         sweeps_[component] = judge.sweeps() - (made.converged_one_early ? 1 : 0);
       }
-      const bool moved = joints_.any() && converge_joints(island, in);
+      if (joints_.any() && converge_joints(island, in)) made.known = LoadsKnown::total;
       for (const JointStage* const joints : joints_.jointed()) demand_motion(*joints, in, *model_, *trial_);
-      return moved ? LoadsKnown::total : made.known;
+      // Joints have turned bodies on from the start, which rounds otherwise than loads at the end are to.
+      for (const Index component : island.components) {
+        if (joints_.any() && made.known == LoadsKnown::total) follow(in, component);
+      }
+      return made.known;
     }
     improve(island, in, judge);
   }
@@ -184,7 +188,6 @@ bool IslandIteration::converge_joints(const StepIsland& island, const StepInput&
     if (left > open) demand_closed(*joints, in, *model_, *trial_);
     if (joints->rows().is_near_singular()) joints->settle_velocities(*trial_);
   }
-  for (const Index component : island.components) follow(in, component);
   return true;
 }
 

@@ -14,25 +14,16 @@ namespace {
 /// Depth to which gaps are projected: nothing that closed within a step [m].
 constexpr double at_rest = 1e-14;
 
-/// Kinetic energy of a component at the end of a step [J].
-double kinetic_energy(const Assembly& assembly, Index component, const StepTrial& trial) {
-  double sum = 0.0;
-  assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-    sum += kind.kinetic_energy(slots, trial.end.v.data() + v);
-  });
-  return sum;
-}
-
 /// Velocities that the joints of a component allow where its bodies have been moved to. Returns the kinetic
 /// energy lost [J].
 double project_velocities(const Assembly& assembly, JointStage& stage, StepTrial& trial) {
   JointConstraints& joints = stage.rows().at_end();
-  const Index component = stage.iterate().component;
-  const double before = kinetic_energy(assembly, component, trial);
+  const Range bodies = assembly.components()[stage.iterate().component].bodies;
+  const double before = kinetic_energy(assembly, bodies, trial.end.v.data());
   joints.update_and_factor({trial.end.view(), trial.at_end.rotation.data()});
   joints.project(JointLevel::velocity, trial.end.v.data());
   joints.project(JointLevel::velocity, trial.end.v.data());  // what rounding left
-  return before - kinetic_energy(assembly, component, trial);
+  return before - kinetic_energy(assembly, bodies, trial.end.v.data());
 }
 
 }  // namespace
@@ -90,14 +81,16 @@ std::span<const Index> StepProjection::apply(const StepIsland& island, const Ste
     return constraint.bodies > 1 && !constraint.key.is_of_joint();
   });
   if (joined) {
-    project({island.components, all, true}, in, means, trial, balance);
+    project({island.components, island.batches, all, true}, in, means, trial, balance);
     return std::span(moved_).subspan(before);
   }
   const auto component_of = [&](const Constraint& at) { return in.assembly.component_of(at.body()); };
   for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
     const Index component = component_of(all[first]);
     while (last < all.size() && component_of(all[last]) == component) ++last;
-    project({{&component, 1}, all.subspan(first, last - first), false}, in, means, trial, balance);
+    const Range alone{component, component + 1};
+    project({{&component, 1}, {&alone, 1}, all.subspan(first, last - first), false}, in, means, trial,
+            balance);
   }
   return std::span(moved_).subspan(before);
 }
@@ -129,12 +122,10 @@ void StepProjection::project(const Part& part, const StepInput& in, const Means&
     if (JointStage* const stage = stages_->of(component)) joints_.push_back(&stage->rows().at_end());
   }
   const StoredEnergies before = potentials(part.components, trial);
-  // Components that contacts join need not follow one another.
-  const Range components{part.components.front(), part.components.back() + 1};
   gaps_.bind({.assembly = assembly,
               .detector = model_->detector,
               .places = means.places,
-              .components = components,
+              .components = part.ranges,
               .joints = joints_,
               .taking_part = part.constraints,
               .touch = part.joined},

@@ -50,6 +50,7 @@ private:
   // Components whose bodies move together.
   struct Part {
     std::span<const Index> components;
+    std::span<const Range> ranges;  // of the same, as they follow one another
     std::span<const Constraint> constraints;
     bool joined;  // by contacts of bodies with each other
   };

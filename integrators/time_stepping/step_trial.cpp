@@ -34,7 +34,6 @@ void TrialAccount::start(Index parts) {
 
 StepNeeds step_needs(const Assembly& assembly, const Detector& detector, bool mean) {
   StepNeeds needs;
-  bool joints = false;
   for (const auto& kind : assembly.force_kinds()) {
     needs.dissipative = needs.dissipative || kind->books_dissipative();
     needs.external = needs.external || kind->books_external();
@@ -42,10 +41,7 @@ StepNeeds step_needs(const Assembly& assembly, const Detector& detector, bool me
   }
   if (assembly.layout()->rotation_size() == 0) needs.load_rotations = false;  // none of particles
   needs.start_rotations = needs.load_rotations || detector.needs_rotations();
-  for (Index component = 0; component < assembly.components().size(); ++component) {
-    joints = joints || assembly.has_joints(component);
-  }
-  needs.midpoint = mean || joints || assembly.layout()->z_size() > 0;
+  needs.midpoint = mean || has_joints(assembly) || assembly.layout()->z_size() > 0;
   return needs;
 }
 

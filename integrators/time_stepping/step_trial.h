@@ -11,6 +11,7 @@
 #include <carom/core/force_kind.h>
 #include <carom/integrators/time_stepping/step_input.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace carom {
@@ -114,6 +115,9 @@ struct CAROM_API StepTrial {
     dv_impulses.resize(end.v.size());
     free.resize(end.v.size());
   }
+
+  /// No impulses have changed velocities so far, of any body.
+  void forget_impulses() { std::fill(dv_impulses.begin(), dv_impulses.end(), 0.0); }
 
   StepNeeds needs;                           ///< of the model
   State end;                                 ///< q_{j+1}, v_{j+1}, z_{j+1} of the last sweep

@@ -147,6 +147,7 @@ bool TimeStepper::make_step(const StepInput& in) {
   if (impacts_ != nullptr) StepImpacts::remove_restitution(islands);
   islands_.projection().lower_rebounds(in, islands, trial_);
   if (turning_ != nullptr) {
+    trial_.forget_impulses();  // those of earlier steps are none of the size of this one's
     const bool follows = islands_.located().on() && model_.options.iteration != Iteration::linearly_implicit;
     turning_->begin(islands, in.step, follows);
     turning_->predict(in, trial_, islands);
