@@ -147,6 +147,18 @@ bool Assembly::has_joints(Index component) const {
   return false;
 }
 
+bool has_joints(const Assembly& assembly, std::span<const Index> components) {
+  return std::any_of(components.begin(), components.end(),
+                     [&](Index component) { return assembly.has_joints(component); });
+}
+
+bool has_joints(const Assembly& assembly) {
+  for (Index component = 0; component < assembly.components().size(); ++component) {
+    if (assembly.has_joints(component)) return true;
+  }
+  return false;
+}
+
 State Assembly::initial_state() const {
   State state(layout_);
   for (const BodySlot& slot : layout_->bodies()) {

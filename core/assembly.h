@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -188,6 +189,13 @@ CAROM_API void evaluate_mean_loads(const Assembly& assembly, Index component, co
 /// Position group and the sum of all loads (Evaluation::force) of one component.
 CAROM_API void evaluate(const Assembly& assembly, Index component, const StateView& state, Evaluation& out);
 
+/// True if any of some components has joints.
+[[nodiscard]] CAROM_API bool has_joints(const Assembly& assembly, std::span<const Index> components);
+/// True if any component has joints.
+[[nodiscard]] CAROM_API bool has_joints(const Assembly& assembly);
+/// Kinetic energy of some bodies [J]. \param velocities over all
+[[nodiscard]] CAROM_API double kinetic_energy(const Assembly& assembly, Range bodies,
+                                              const double* velocities);
 /// Adds the potential energies of one component. The position group of `evaluation` must be up to date.
 CAROM_API void add_potentials(const Assembly& assembly, Index component, const StateView& state,
                               const Evaluation& evaluation, StoredEnergies& out);

@@ -262,6 +262,14 @@ void evaluate(const Assembly& assembly, Index component, const StateView& state,
   evaluate_loads(assembly, component, state, out, {force, force, force});
 }
 
+double kinetic_energy(const Assembly& assembly, Range bodies, const double* velocities) {
+  double sum = 0.0;
+  assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
+    sum += kind.kinetic_energy(slots, velocities + v);
+  });
+  return sum;
+}
+
 void add_stored_energies(const Assembly& assembly, Index component, const StateView& state,
                          const Evaluation& evaluation, StoredEnergies& out) {
   assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {

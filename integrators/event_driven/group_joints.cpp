@@ -60,13 +60,4 @@ BoundComponents::BoundComponents(const Assembly& assembly, std::span<const Index
   for (const GroupJoints::Part& part : rows.parts()) bounds.add(assembly, part.component, *part.joints);
 }
 
-bool has_joints(const Assembly& assembly, std::span<const Index> components) {
-  return std::any_of(components.begin(), components.end(), [&](Index component) {
-    for (Index kind = 0; kind < assembly.joint_kinds().size(); ++kind) {
-      if (!assembly.joints(component, kind).empty()) return true;
-    }
-    return false;
-  });
-}
-
 }  // namespace carom

@@ -71,7 +71,4 @@ struct CAROM_API BoundComponents {
   FrictionBounds bounds;  ///< of friction in joints that follow from forces
 };
 
-/// True if a component has joints.
-[[nodiscard]] CAROM_API bool has_joints(const Assembly& assembly, std::span<const Index> components);
-
 }  // namespace carom

@@ -48,7 +48,7 @@ void ContactTurning::begin(std::span<const StepIsland> islands, double step, boo
     const std::size_t before = mechanisms_.size();
     if (joints_->any()) list_mechanisms(island);
     const bool answered = mechanisms_.size() > before;
-    const bool any_alone = alone && !has_joints(island);
+    const bool any_alone = alone && !has_joints(look_.assembly(), island.components);
     for (const Constraint& contact : island.constraints) {
       if (contact.attached) continue;  // spins
       if (!answered && (contact.key.is_of_joint() || !contact.turns(step, negligible_))) continue;
@@ -76,12 +76,6 @@ void ContactTurning::list_mechanisms(const StepIsland& island) {
   for (const Index component : island.components) {
     if (joints_->of(component) != nullptr) mechanisms_.push_back(component);
   }
-}
-
-/// True if joints bind bodies of an island: then none is followed by itself.
-bool ContactTurning::has_joints(const StepIsland& island) const {
-  return joints_->any() && std::any_of(island.components.begin(), island.components.end(),
-                                       [this](Index component) { return joints_->of(component) != nullptr; });
 }
 
 /// True of a contact of a body that may be followed alone, in an island without joints.

@@ -64,7 +64,6 @@ private:
     SingleConstraint start, now;
     std::array<double, std::size_t{Constraint::max_rows}> ground_after{};
   };
-  [[nodiscard]] bool has_joints(const StepIsland& island) const;
   [[nodiscard]] bool may_be_followed(const Constraint& contact) const;
   void list_mechanisms(const StepIsland& island);
   void restore(const StepIsland& island) const;

@@ -7,16 +7,6 @@
 
 namespace carom {
 
-namespace {
-
-/// True if joints bind bodies of the island.
-bool has_joints(const NewtonIsland& island) {
-  return std::any_of(island.components.begin(), island.components.end(),
-                     [&](Index component) { return island.joints.of(component) != nullptr; });
-}
-
-}  // namespace
-
 NewtonIteration::Outcome NewtonIteration::start(const StepInput& in, const StepRule& rule,
                                                 const NewtonIsland& island, StepTrial& trial) {
   update_.resize(trial.end.v.size());
@@ -69,7 +59,7 @@ bool NewtonIteration::linearise(const StepInput& in, const NewtonIsland& island,
         {&matrix, in.assembly.components()[component].v, struck ? &joints->answer().rows() : nullptr});
   }
   // With joints W is made anew by every sweep.
-  if (island.contact == nullptr || has_joints(island)) return true;
+  if (island.contact == nullptr || has_joints(in.assembly, island.components)) return true;
   LinearisedResponse response(in.assembly, linearised_);
   island.contact->respond(response);
   return true;
@@ -77,7 +67,7 @@ bool NewtonIteration::linearise(const StepInput& in, const NewtonIsland& island,
 
 NewtonIteration::Outcome NewtonIteration::step(const StepInput& in, const StepRule& rule,
                                                const NewtonIsland& island, StepTrial& trial) {
-  if (has_joints(island)) return step_with_joints(in, rule, island, trial);
+  if (has_joints(in.assembly, island.components)) return step_with_joints(in, rule, island, trial);
   if (stale_ && !linearise(in, island, trial.end.view(), trial.at_end)) return Outcome::singular;
   IslandProblem* const contact = island.contact;
   const double weight = rule.impulse_weight(in.step);

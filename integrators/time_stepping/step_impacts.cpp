@@ -152,16 +152,6 @@ StrikeAnswer StepImpacts::solve(ImpactLaw law) {
   return {problem, problem.solve(chain_).usable()};
 }
 
-double StepImpacts::kinetic_energy(const StepInput& in) const {
-  double sum = 0.0;
-  for (Index component = 0; component < in.assembly.components().size(); ++component) {
-    in.assembly.for_bodies(component, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-      sum += kind.kinetic_energy(slots, start_.v.data() + v);
-    });
-  }
-  return sum;
-}
-
 /// Books the impact. Joints whose rate is prescribed do work on it, which is the rest of the change.
 /// Velocities of the rule of mean loads obey joints but for an error of the step, on which their answers do
 /// work.
@@ -170,7 +160,8 @@ void StepImpacts::apply(const StepInput& in, const ImpactNote& note, const Islan
   const bool driven = std::any_of(joints_.begin(), joints_.end(),
                                   [](const JointConstraints& joints) { return joints.depends_on_time(); });
   const bool has_rest = driven || (model_->rule.is_mean() && !joints_.empty());
-  const double before = has_rest ? kinetic_energy(in) : 0.0;
+  const Range all{0, static_cast<Index>(in.assembly.layout()->bodies().size())};
+  const double before = has_rest ? kinetic_energy(in.assembly, all, start_.v.data()) : 0.0;
   problem.map().add_velocities(start_.v.data());
   const EnergyFlows known = balance_.result().flows;
   const double gain = balance_.book_impact(problem, start_.v.data(), note, in, trial);
@@ -181,7 +172,7 @@ void StepImpacts::apply(const StepInput& in, const ImpactNote& note, const Islan
       const double change = flows.values[i] - known.values[i];
       booked += is_gain(static_cast<EnergyFlow>(i)) ? change : -change;
     }
-    const double rest = kinetic_energy(in) - before - booked;
+    const double rest = kinetic_energy(in.assembly, all, start_.v.data()) - before - booked;
     if (driven) flows[EnergyFlow::external] += rest;
     if (!driven) flows[EnergyFlow::coupling_discretisation] -= rest;
   }

@@ -58,7 +58,6 @@ private:
   [[nodiscard]] StepErrors errors(const StepInput& in, StepTrial& trial) const;
   void place_joints(const StepInput& in, StepTrial& trial);
   void apply(const StepInput& in, const ImpactNote& note, const IslandProblem& problem, StepTrial& trial);
-  [[nodiscard]] double kinetic_energy(const StepInput& in) const;
 
   const StepModel* model_;
   bool on_;

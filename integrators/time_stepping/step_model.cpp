@@ -14,13 +14,6 @@ bool follow_newton(const Detector& detector, const TimeStepping& options) {
          !resists_rolling(detector);
 }
 
-bool has_joints(const Assembly& assembly) {
-  for (Index component = 0; component < assembly.components().size(); ++component) {
-    if (assembly.has_joints(component)) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 StepModel::StepModel(const Assembly& model, const TimeStepping& chosen, const Detector& contacts)

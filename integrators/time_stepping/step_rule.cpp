@@ -42,14 +42,6 @@ double work(const double* loads, const State& start, const State& end, Range v, 
   return 0.25 * step * sum;
 }
 
-double kinetic_energy(const StepInput& in, Range bodies, const StepTrial& trial) {
-  double sum = 0.0;
-  in.assembly.for_bodies(bodies, [&](const BodyKind& kind, Range slots, Index, Index v, Index) {
-    sum += kind.kinetic_energy(slots, trial.end.v.data() + v);
-  });
-  return sum;
-}
-
 }  // namespace
 
 void StepRule::move(const StepInput& in, const BodyPlace& bodies, const BodyMasses& masses,
@@ -95,14 +87,14 @@ BlockWorks StepRule::works(const StepInput& in, const Block& block, const StepTr
       carom::work(start_of_sum(in, trial), trial.loads_guess.data(), in.start, trial.end, block.v, in.step);
   sums.dissipative = of_cause(in.companion.loads.dissipative, trial.loads_end.dissipative);
   sums.external = of_cause(in.companion.loads.external, trial.loads_end.external);
-  sums.kinetic = kinetic_energy(in, block.bodies, trial);
+  sums.kinetic = kinetic_energy(in.assembly, block.bodies, trial.end.v.data());
   return sums;
 }
 
 void StepRule::works_constant(const StepInput& in, Range bodies, Range v, const StepTrial& trial,
                               BlockWorks& out) const {
   out.total = work_constant(in, v, trial);
-  out.kinetic = kinetic_energy(in, bodies, trial);
+  out.kinetic = kinetic_energy(in.assembly, bodies, trial.end.v.data());
   out.dissipative = out.external = 0.0;
 }
 
