@@ -118,6 +118,13 @@ private:
   int looks_ = 0;
 };
 
+/// True if values and the bound of the rate exclude a closing, and that the gap comes so near to zero that it
+/// may be through a side behind which it is positive again.
+bool is_excluded(const ClosingRule& rule, const GapLook& from, const GapLook& to) {
+  const double way = rule.fastest * (to.time - from.time);
+  return from.gap.value + to.gap.value - way > 2.0 * (rule.noise - rule.level);
+}
+
 }  // namespace
 
 bool has_kinks(const BodyPairBound& bound) {
@@ -141,6 +148,7 @@ StepPolynomial::End smooth_gap(const StepPolynomial::End& gap, double rho) {
 
 double predict_closing(PairPath& path, const PairGap& of, const ClosingRule& how, const GapLook& from,
                        const GapLook& to, PathLook looks) {
+  if (is_excluded(how, from, to)) return never;
   const BodyPairBound* const bound = of.bound;
   FallRule rule;
   rule.raise = how.noise - how.level;
@@ -180,7 +188,6 @@ public:
 
   [[nodiscard]] double first(const GapLook& from, const GapLook& to, int halvings) {
     using Kind = ClosingRoot::Kind;
-    if (!may_close(from, to)) return never;
     const double predicted = predict_closing(*path_, *of_, rule_, from, to, looks_);
     if (!(predicted < never)) return never;
     // It may be between the last time before the end of the span and that end.
@@ -223,12 +230,6 @@ private:
     rule_.level -= lowered - lowered_;
     lowered_ = lowered;
     return true;
-  }
-  /// False where values and the bound of the rate exclude a closing, and that the gap comes so near to zero
-  /// that it may be through a side behind which it is positive again.
-  [[nodiscard]] bool may_close(const GapLook& from, const GapLook& to) const {
-    const double way = rule_.fastest * (to.time - from.time);
-    return !(from.gap.value + to.gap.value - way > 2.0 * (rule_.noise - rule_.level));
   }
   [[nodiscard]] GapLook look(double time) { return {time, true, gap_in(*of_, path_->sample(time, looks_))}; }
 

@@ -27,7 +27,29 @@ void span_parabola(double x, double v, double a, double length, double& low, dou
   high = std::max(high, extreme);
 }
 
+/// The moment of a body in a sample.
+BodyMoment moment_in(const MotionSample& sample, const BodySlot& slot) {
+  BodyMoment at;
+  for (Index k = 0; k < slot.v_size; ++k)
+    at[k] = {sample.state.q[slot.q + k], sample.state.v[slot.v + k], sample.acceleration[slot.v + k]};
+  return at;
+}
+
 }  // namespace
+
+BodyMoment BodyFlight::moment(double at) const {
+  const double s = at - time;
+  BodyMoment out = begin;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const auto& [place, rate, acceleration] = begin[k];
+    if (is_free) {
+      out[k] = {place + s * (rate + 0.5 * s * acceleration), rate + s * acceleration, acceleration};
+    } else if (due < never && due > time) {
+      out[k] = motion_between(begin[k], end[k], due - time, s / (due - time));
+    }
+  }
+  return out;
+}
 
 BodyFlights::BodyFlights(const Assembly& assembly, const Detector& detector)
     : assembly_(&assembly),
@@ -64,6 +86,7 @@ void BodyFlights::choose_frame(const State& state) {
 
 void BodyFlights::start(const State& state, double extra) {
   choose_frame(state);
+  extra_ = extra;
   double size = 0.0, count = 0.0;
   Vec<2> low(never, never), high(-never, -never);
   for (Index body = 0; body < flights_.size(); ++body) {
@@ -95,6 +118,8 @@ void BodyFlights::start(const State& state, double extra) {
 double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, MotionSample& end) {
   const SmoothMotion& motion = group.motion();
   const bool is_free = motion.is_ballistic();
+  const FlowMethod method = motion.model().options->method;
+  const bool is_curve = method == FlowMethod::explicit_runge_kutta || method == FlowMethod::one_step;
   JoinableGroup(group).sample(time, false, Forces::all, now);
   const auto for_flights = [&](auto&& f) {
     for (const MotionUnknowns::Part& part : motion.model().parts()) {
@@ -110,20 +135,28 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
     flight.velocity = {now.state.v[slot.v], now.state.v[slot.v + 1]};
     flight.acceleration = {now.acceleration[slot.v], now.acceleration[slot.v + 1]};
     flight.is_free = is_free;
+    flight.is_curve = is_curve;
     flight.speed = 0.0;
+    flight.begin = moment_in(now, slot);
   });
   const double due = JoinableGroup(group).due();
   const bool rests = !(due < never);
   if (!is_free && !rests) JoinableGroup(group).sample(due, false, Forces::all, end);
   for_flights([&](Index body, BodyFlight& flight) {
-    if (rests) flight.velocity = flight.acceleration = Vec<2>::Zero();  // but for rounding
+    flight.due = due;
+    if (rests) {  // but for rounding
+      flight.velocity = flight.acceleration = Vec<2>::Zero();
+      for (CoordinateMotion& at : flight.begin) at.rate = at.acceleration = 0.0;
+    }
     if (is_free) return;
     flight.speed = (flight.velocity - frame_).norm();  // of bodies at rest too, in a frame that goes on
     if (rests) return;
     constexpr double unseen = 2.0;
-    const Index v = assembly_->layout()->bodies()[body].v;
-    const Vec<2> later(end.state.v[v], end.state.v[v + 1]),
-        pull(end.acceleration[v], end.acceleration[v + 1]);
+    flight.end = moment_in(end, assembly_->layout()->bodies()[body]);
+    for (const CoordinateMotion& at : flight.end)
+      flight.is_curve = flight.is_curve && std::isfinite(at.acceleration);
+    const Vec<2> later(flight.end[0].rate, flight.end[1].rate),
+        pull(flight.end[0].acceleration, flight.end[1].acceleration);
     flight.speed = std::max(flight.speed, (later - frame_).norm()) +
                    unseen * (due - time) * std::max(flight.acceleration.norm(), pull.norm());
   });
@@ -154,7 +187,7 @@ void BodyFlights::sweep(Index body, double length) {
     }
     const double size =
         std::max({std::abs(box.min[k]), std::abs(box.max[k]), std::abs(flight.place[k])}) + flight.reach;
-    const double reach = flight.reach + place_rounding * size;
+    const double reach = flight.reach + extra_ + place_rounding * size;
     box.min[k] -= reach;
     box.max[k] += reach;
   }

@@ -19,13 +19,18 @@
 #include <carom/core/export.h>
 #include <carom/integrators/event_driven/clock_group.h>
 #include <carom/integrators/event_driven/motion_sample.h>
+#include <carom/integrators/event_driven/step_path.h>
 
+#include <array>
 #include <vector>
 
 namespace carom {
 
-/// The motion of the centre of mass of a body from a time on.
-struct BodyFlight {
+/// A body at one time: x, y, and the angle where it has one [m, rad].
+using BodyMoment = std::array<CoordinateMotion, 3>;
+
+/// The motion of a body from a time on.
+struct CAROM_API BodyFlight {
   double time = 0.0;                     ///< [s]
   Vec<2> place = Vec<2>::Zero();         ///< place at that time [m]
   Vec<2> velocity = Vec<2>::Zero();      ///< velocity at that time [m/s]
@@ -34,12 +39,14 @@ struct BodyFlight {
   double speed = 0.0;      ///< bound of it in the frame of the volumes, where it does not fly freely [m/s]
   Index component = none;  ///< component of the body
   bool is_free = false;    ///< nothing but uniform fields acts: the acceleration stays
+  /// The motion between `time` and `due` is the curve of degree 5 that has both moments, as accurate as the
+  /// steps of methods of order 5 are; else it is only known to those who sample its group.
+  bool is_curve = false;
+  double due = 0.0;       ///< end of the step ahead, or its event; infinite at rest [s]
+  BodyMoment begin, end;  ///< at `time` and `due`
 
-  /// Place of a body that flies freely at a time [m].
-  [[nodiscard]] Vec<2> place_at(double at) const {
-    const double s = at - time;
-    return place + s * (velocity + 0.5 * s * acceleration);
-  }
+  /// The motion at a time from `time` to `due`, of a body that flies freely or follows a curve.
+  [[nodiscard]] BodyMoment moment(double at) const;
 };
 
 /// The flights of all bodies.
@@ -49,7 +56,7 @@ public:
   BodyFlights(const Assembly& assembly, const Detector& detector);
 
   /// Begins: chooses the size of cells by the places of bodies, and takes them where they are, for no time.
-  /// \param extra added to volumes [m]
+  /// \param extra added to volumes from here on: those of bodies nearer than twice that overlap [m]
   void start(const State& state, double extra);
   /// Follows the bodies of a group from a time on, within its step ahead. Returns its horizon [s]. \param
   /// memory samples, overwritten
@@ -72,6 +79,7 @@ private:
   Vec<2> frame_ = Vec<2>::Zero();  // its velocity [m/s]
   double frame_time_ = 0.0;        // when places in it are those at rest [s]
   double travel_ = 0.0;            // the way that a volume is made for [m]
+  double extra_ = 0.0;             // added to volumes: what is as near as that overlaps [m]
 };
 
 }  // namespace carom

@@ -84,6 +84,12 @@ struct CAROM_API EventInstant {
     return std::abs(slip) <= ActiveSet::left_by_dependent * scales.speed &&
            std::find(stopped.begin(), stopped.end(), pair) != stopped.end();
   }
+  /// True if a pair takes part in impacts: one that is no farther apart than gap_tolerance. Bodies of a heap
+  /// hit each other over gaps far below that, nanoseconds apart: one impact of all takes the place of these.
+  [[nodiscard]] bool is_struck(std::size_t pair) const {
+    const Constraint& contact = contacts[pair];
+    return touches(pair) || (contact.rows > 0 && contact.gap <= motion.model().options->gap_tolerance);
+  }
   /// Distance that bodies are not moved by during the event, projections included [m]: a longer way may lead
   /// into what is not in their island.
   [[nodiscard]] double longest_shift() const;

@@ -1,5 +1,6 @@
 // Problem: many groups at their own pace, of which few meet at a time.
 
+#include <carom/core/numerics/never.h>
 #include <carom/integrators/event_driven/group_meetings.h>
 #include <carom/integrators/event_driven/joinable_group.h>
 
@@ -80,9 +81,16 @@ void GroupMeetings::keep(const Appointment& at, EventBalance& balance) {
   if (at.b != none) {
     ClockGroup& other = groups_->of(at.b);
     if (&group == &other) return;
+    double time = at.time;
+    if (at.guess.pair.body != none) time = search_.locate(at);
+    if (time > at.time) {
+      if (time < never) queue_.add(time, at.a, at.b);
+      return;
+    }
     list_.assign({&group, &other});
-    search_.add_near(at.time, near(), list_);
-    ClockGroup& joined = join(at.time, balance);
+    search_.add_near(time, near(), list_);
+    for (const ClockGroup* const meets : list_) time = std::max(time, meets->now());
+    ClockGroup& joined = join(time, balance);
     JoinableGroup(joined).count_meeting();
     return resolve(joined, balance);
   }

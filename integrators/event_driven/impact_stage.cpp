@@ -57,7 +57,7 @@ bool ImpactStage::resolve(EventInstant& at) {
   }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < at.contacts.size(); ++i) {
-    if (at.touches(i)) names.push_back(failure_->name(at.contacts[i]));
+    if (at.is_struck(i)) names.push_back(failure_->name(at.contacts[i]));
   }
   failure_->fail(impacts_without_end(), std::move(names));
 }
@@ -85,7 +85,7 @@ bool ImpactStage::settle(std::span<const Index> pairs, EventInstant& at) {
 double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventInstant& at) const {
   double fastest = 0.0;
   for (const Index i : pairs) {
-    if (at.touches(i)) fastest = std::max(fastest, at.approach(i));
+    if (at.is_struck(i)) fastest = std::max(fastest, at.approach(i));
   }
   return fastest;
 }
@@ -95,7 +95,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, ImpactOnset onset
                                  EventInstant& at) {
   list_touching(pairs, at);
   const bool captured = onset == ImpactOnset::closing;
-  captured ? add_captured(pairs, at) : leave_out_repeated(at.scales.gap_noise);
+  if (!captured) leave_out_repeated(at.scales.gap_noise);
   const StrikeInput impact{.rules = rules_of(at),
                            .velocity = at.velocities(),
                            .speed_noise = at.scales.speed_noise,
@@ -154,7 +154,7 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
   touching.clear();
   memory_->places.clear();
   for (const Index i : pairs) {
-    if (!at.touches(i)) continue;
+    if (!at.is_struck(i)) continue;
     const bool follows_force = at.motion.joints().depends_on_joint_force(at.contacts[i]);
     if (!takes_part(at.contacts[i], impacts_of_events, follows_force)) continue;
     Constraint& contact = touching.add(at.contacts[i]);
@@ -227,25 +227,6 @@ void ImpactStage::apply(EventKind kind, const IslandProblem& problem, EventInsta
   }
   if (gain == 0.0 || rules_of(at).energy_gain != EnergyGain::refuse) return;
   failure_->fail(gain_is_refused("an impact", gain), failure_->names(problem.constraints()), &problem);
-}
-
-/// Adds contacts that are about to close too.
-void ImpactStage::add_captured(std::span<const Index> pairs, const EventInstant& at) {
-  const double speed_limit = capture_speed(pairs, at), limit = speed_limit * speed_limit;
-  for (const Index i : pairs) {
-    if (at.touches(i)) continue;
-    const Constraint& contact = at.contacts[i];
-    // Almost without loads what is slow is far off all the same.
-    if (contact.gap > at.motion.model().options->gap_tolerance) continue;
-    const double speed = contact.normal_velocity(at.velocities());
-    const double fall = contact.normal_acceleration(at.now.acceleration.data());
-    if (!(fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit)) continue;
-    memory_->touching.add(contact);
-    memory_->places.push_back(i);
-    if (i + 1 == at.contacts.size() || !at.motion.model().pairs[i + 1].rolling) continue;
-    memory_->touching.add(at.contacts[i + 1]);
-    memory_->places.push_back(i + 1);
-  }
 }
 
 /// Projects the rest of the normal velocities and gaps of captured contacts away.

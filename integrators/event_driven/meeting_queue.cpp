@@ -21,8 +21,8 @@ void MeetingQueue::start(Index count) {
   heap_.clear();
 }
 
-void MeetingQueue::add(double time, Index a, Index b) {
-  heap_.push_back({time, a, b, motion_[a], b == none ? 0 : motion_[b]});
+void MeetingQueue::add(double time, Index a, Index b, const Guess& guess) {
+  heap_.push_back({time, a, b, motion_[a], b == none ? 0 : motion_[b], guess});
   std::push_heap(heap_.begin(), heap_.end(), is_later);
 }
 

@@ -14,49 +14,52 @@ namespace carom {
 
 namespace {
 
-/// Two bodies that fly freely, as they do between events; centres only.
-class FreePath final : public PairPath {
+/// Two bodies: by their flights where these tell, else by the steps of their groups.
+class BodiesPath final : public PairPath {
 public:
-  FreePath(const BodyPairBound& bound, const BodyFlight& a, const BodyFlight& b, MotionSample& out)
-      : bound_(&bound), a_(&a), b_(&b), out_(&out) {}
+  BodiesPath(const BodyPairBound& bound, const BodyFlight& a, const BodyFlight& b, ClockGroup& of_a,
+             ClockGroup& of_b, MotionSample& out)
+      : bound_(&bound), a_(&a), b_(&b), of_a_(&of_a), of_b_(&of_b), out_(&out) {}
 
-  [[nodiscard]] PathSample sample(double time, PathLook /*how*/) override {
-    write(bound_->a, *a_, time);
-    write(bound_->b, *b_, time);
+  /// True if flights tell the exact motion of both.
+  [[nodiscard]] bool is_free() const { return a_->is_free && b_->is_free; }
+  /// True if flights tell the motion of both, as exactly as steps are.
+  [[nodiscard]] bool is_told() const {
+    return (a_->is_free || a_->is_curve) && (b_->is_free || b_->is_curve);
+  }
+  [[nodiscard]] PathSample sample(double time, PathLook how) override {
+    if (is_free() || (how == PathLook::between && is_told())) {
+      out_->state.time = time;
+      write(bound_->a, *a_, time);
+      write(bound_->b, *b_, time);
+      return out_->on_path();
+    }
+    const bool landed = how != PathLook::between;
+    const Forces forces = how == PathLook::exact_rates ? Forces::without_contact : Forces::all;
+    JoinableGroup(*of_a_).sample(time, landed, forces, *out_);
+    JoinableGroup(*of_b_).sample(time, landed, forces, *out_);
     return out_->on_path();
   }
 
 private:
   void write(const BodySlot& slot, const BodyFlight& flight, double time) {
-    const Vec<2> place = flight.place_at(time);
-    const Vec<2> velocity = flight.velocity + (time - flight.time) * flight.acceleration;
-    for (Index k = 0; k < 2; ++k) {
-      out_->state.q[slot.q + k] = place[k];
-      out_->state.v[slot.v + k] = velocity[k];
-      out_->acceleration[slot.v + k] = flight.acceleration[k];
+    const BodyMoment at = flight.moment(time);
+    for (Index k = 0; k < slot.v_size; ++k) {
+      out_->state.q[slot.q + k] = at[k].place;
+      out_->state.v[slot.v + k] = at[k].rate;
+      out_->acceleration[slot.v + k] = at[k].acceleration;
     }
+    if (bound_->central) return;  // nobody asks for rotations
+    std::vector<double>& placed_at = out_->evaluation.placed_at;
+    if (!placed_at.empty()) placed_at[flight.component] = time;
+    if (slot.rotation == none) return;
+    constexpr std::size_t angle = 2;
+    Space<2>::rotation(&at[angle].place, out_->evaluation.rotation.data() + slot.rotation);
   }
 
   const BodyPairBound* bound_;
   const BodyFlight *a_, *b_;
-  MotionSample* out_;
-};
-
-/// Two groups within their steps.
-class GroupsPath final : public PairPath {
-public:
-  GroupsPath(ClockGroup& a, ClockGroup& b, MotionSample& out) : a_(&a), b_(&b), out_(&out) {}
-
-  [[nodiscard]] PathSample sample(double time, PathLook how) override {
-    const bool landed = how != PathLook::between;
-    const Forces forces = how == PathLook::exact_rates ? Forces::without_contact : Forces::all;
-    JoinableGroup(*a_).sample(time, landed, forces, *out_);
-    JoinableGroup(*b_).sample(time, landed, forces, *out_);
-    return out_->on_path();
-  }
-
-private:
-  ClockGroup *a_, *b_;
+  ClockGroup *of_a_, *of_b_;
   MotionSample* out_;
 };
 
@@ -107,15 +110,24 @@ void MeetingSearch::find(ClockGroup& group, double time, MeetingQueue& queue) {
   begins_.forget();
   ends_.forget();
   for_neighbours(group, [&](const std::array<Index, 2>& numbers, const Bodies& bodies) {
-    const double end = std::min(flights_->horizon(bodies.a.component), flights_->horizon(bodies.b.component));
-    if (!(end > time)) return;
     pairs_.clear();
     groups_->pairs().append(numbers, pairs_);
     for (const ContactPair& pair : pairs_) {
-      const double at = closing(bodies, pair, time, end);
-      if (at < never) queue.add(at, bodies.a.component, bodies.b.component);
+      const double at = closing(bodies, pair, time, Wanted::guess);
+      if (!(at < never)) continue;
+      const bool is_exact = bodies.a.is_free && bodies.b.is_free;
+      queue.add(at, bodies.a.component, bodies.b.component, is_exact ? Guess{} : Guess{pair, time});
     }
   });
+}
+
+double MeetingSearch::locate(const Appointment& at) {
+  begins_.forget();
+  ends_.forget();
+  const ContactPair& pair = at.guess.pair;
+  const std::array of{std::min(pair.body, pair.other), std::max(pair.body, pair.other)};
+  const Bodies bodies{flights_->of(of[0]), flights_->of(of[1]), groups_->of(at.a), groups_->of(at.b)};
+  return closing(bodies, pair, at.guess.from, Wanted::exact);
 }
 
 /// Rounding of gaps, not above that of the group of both.
@@ -131,38 +143,39 @@ double MeetingSearch::noise(const Bodies& bodies, const BodyPairBound& bound) co
   return gap_noise_of(size, *options_);
 }
 
-double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, double end) {
+double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, Wanted wanted) {
+  const double end = std::min(flights_->horizon(bodies.a.component), flights_->horizon(bodies.b.component));
+  if (!(end > begin)) return never;
   const BodyPairBound bound = bound_of_pair(detector_->outlines(), pair);
   if (!bound.closes_alone()) return never;
   const PairGap gap{*detector_, pair, &bound};
+  const bool in_order = &bodies.a == &flights_->of(pair.body);
+  BodiesPath path(bound, flights_->of(pair.body), flights_->of(pair.other),
+                  in_order ? bodies.of_a : bodies.of_b, in_order ? bodies.of_b : bodies.of_a, at_);
+  double speed = 0.0, pull = 0.0;
+  const auto look = [&](double time, GroupSamples& samples) -> GapLook {
+    const PathSample at = path.is_told() ? path.sample(time, PathLook::between)
+                                         : samples.at(time, bodies.of_a, bodies.of_b).on_path();
+    speed = std::max(speed, bound.most_speed(at.state.v, nullptr));
+    pull = std::max(pull, bound.most_speed(at.acceleration, nullptr));
+    return {time, true, gap_in(gap, at)};
+  };
+  const GapLook from = look(begin, begins_), to = look(end, ends_);
   ClosingRule rule;
   rule.noise = noise(bodies, bound);
   rule.fine = std::max(fine_gap(*options_), rule.noise);  // far from the origin gaps are not known better
   rule.found = 0.25 * rule.noise;
-  rule.flies_freely = bodies.a.is_free && bodies.b.is_free;
-  if (rule.flies_freely && bound.central && bound.rounding > 0.0) {
-    FreePath path(bound, flights_->of(pair.body), flights_->of(pair.other), at_);
-    const GapLook from{begin, true, gap_in(gap, path.sample(begin, PathLook::exact))};
-    const GapLook to{end, true, gap_in(gap, path.sample(end, PathLook::exact))};
-    rule.level = std::min(0.0, from.gap.value);
-    return first_closing(path, gap, rule, from, to);
-  }
-  double speed = 0.0, pull = 0.0;
-  const auto look = [&](double time, GroupSamples& samples) -> GapLook {
-    const MotionSample& at = samples.at(time, bodies.of_a, bodies.of_b);
-    speed = std::max(speed, bound.most_speed(at.state.v.data(), nullptr));
-    pull = std::max(pull, bound.most_speed(at.acceleration.data(), nullptr));
-    return {time, true, gap_in(gap, at.on_path())};
-  };
-  const GapLook from = look(begin, begins_), to = look(end, ends_);
-  constexpr double unseen = 2.0;
-  constexpr double of_tolerances = 10.0;  // errors up to this are those of tolerances
-  rule.fastest = speed + (rule.flies_freely ? 0.0 : unseen * (end - begin) * pull);
+  rule.flies_freely = path.is_free();
   rule.level = std::min(0.0, from.gap.value);
-  rule.slow = speed_noise_of(rule.fastest, options_->absolute_tolerance);
-  rule.misleading = of_tolerances * options_->gap_tolerance;
-  rule.contradiction = options_->gap_tolerance;
-  GroupsPath path(bodies.of_a, bodies.of_b, at_);
+  if (!(rule.flies_freely && bound.central && bound.rounding > 0.0)) {
+    constexpr double unseen = 2.0;
+    constexpr double of_tolerances = 10.0;  // errors up to this are those of tolerances
+    rule.fastest = speed + (rule.flies_freely ? 0.0 : unseen * (end - begin) * pull);
+    rule.slow = speed_noise_of(rule.fastest, options_->absolute_tolerance);
+    rule.misleading = of_tolerances * options_->gap_tolerance;
+    rule.contradiction = options_->gap_tolerance;
+  }
+  if (wanted == Wanted::guess && !path.is_free()) return predict_closing(path, gap, rule, from, to);
   return first_closing(path, gap, rule, from, to);
 }
 
@@ -174,12 +187,12 @@ double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, const Bodie
   for (const ContactPair& pair : pairs_) {
     const BodyPairBound bound = bound_of_pair(detector_->outlines(), pair);
     const PairGap gap{*detector_, pair, &bound};
-    if (bodies.a.is_free && bodies.b.is_free && bound.central) {
-      const Vec<2> apart = bodies.a.place_at(time) - bodies.b.place_at(time);
-      least = std::min(least, apart.norm() - bound.rounding);
-      continue;
-    }
-    least = std::min(least, gap_in(gap, begins_.at(time, bodies.of_a, bodies.of_b).on_path()).value);
+    const bool in_order = &bodies.a == &flights_->of(pair.body);
+    BodiesPath path(bound, flights_->of(pair.body), flights_->of(pair.other),
+                    in_order ? bodies.of_a : bodies.of_b, in_order ? bodies.of_b : bodies.of_a, at_);
+    const PathSample at = path.is_told() ? path.sample(time, PathLook::between)
+                                         : begins_.at(time, bodies.of_a, bodies.of_b).on_path();
+    least = std::min(least, gap_in(gap, at).value);
   }
   return least;
 }

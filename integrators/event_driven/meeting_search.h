@@ -15,6 +15,7 @@
 #include <carom/integrators/event_driven/motion_sample.h>
 
 #include <array>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -56,7 +57,10 @@ public:
   }
 
   /// Makes appointments for all meetings of a group with others from a time on, before the horizons of both.
+  /// Times of bodies that do not fly freely are guesses.
   void find(ClockGroup& group, double time, MeetingQueue& queue);
+  /// When the meeting of a guess is on the exact motion; infinite: there is none. \param at due, valid
+  [[nodiscard]] double locate(const Appointment& at);
   /// Adds all groups that are as near to groups of a list as `near` [m], or to those added. \param time
   /// within the horizons of all
   void add_near(double time, double near, std::vector<ClockGroup*>& list);
@@ -69,7 +73,8 @@ private:
   };
   template <class F>
   void for_neighbours(ClockGroup& group, F&& f);
-  [[nodiscard]] double closing(const Bodies& bodies, const ContactPair& pair, double begin, double end);
+  enum class Wanted : std::uint8_t { guess, exact };
+  [[nodiscard]] double closing(const Bodies& bodies, const ContactPair& pair, double begin, Wanted wanted);
   [[nodiscard]] double least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time);
   [[nodiscard]] double noise(const Bodies& bodies, const BodyPairBound& bound) const;
 

@@ -4,20 +4,31 @@
 
 namespace carom {
 
+CoordinateMotion motion_between(const CoordinateMotion& from, const CoordinateMotion& to, double length,
+                                double tau) {
+  const double v = length * from.rate, a = length * length * from.acceleration;
+  const double d = to.place - from.place - v - 0.5 * a;
+  const double e = length * to.rate - v - a;
+  const double f = length * length * to.acceleration - a;
+  const double c3 = 10.0 * d - 4.0 * e + 0.5 * f;
+  const double c4 = -15.0 * d + 7.0 * e - f;
+  const double c5 = 6.0 * d - 3.0 * e + 0.5 * f;
+  return {from.place + tau * (v + tau * (0.5 * a + tau * (c3 + tau * (c4 + tau * c5)))),
+          (v + tau * (a + tau * (3.0 * c3 + tau * (4.0 * c4 + tau * 5.0 * c5)))) / length,
+          (a + tau * (6.0 * c3 + tau * (12.0 * c4 + tau * 20.0 * c5))) / (length * length)};
+}
+
 void follow_path(const PathEnd& from, const PathEnd& to, std::size_t count, double time, std::span<double> y,
                  double* acceleration) {
   const double length = to.time - from.time, tau = (time - from.time) / length;
+  const auto motion_in = [count](const PathEnd& end, std::size_t i) {
+    return CoordinateMotion{end.y[i], end.y[count + i], end.acceleration[i]};
+  };
   for (std::size_t i = 0; i < count; ++i) {
-    const double v = length * from.y[count + i], a = length * length * from.acceleration[i];
-    const double d = to.y[i] - from.y[i] - v - 0.5 * a;
-    const double e = length * to.y[count + i] - v - a;
-    const double f = length * length * to.acceleration[i] - a;
-    const double c3 = 10.0 * d - 4.0 * e + 0.5 * f;
-    const double c4 = -15.0 * d + 7.0 * e - f;
-    const double c5 = 6.0 * d - 3.0 * e + 0.5 * f;
-    y[i] = from.y[i] + tau * (v + tau * (0.5 * a + tau * (c3 + tau * (c4 + tau * c5))));
-    y[count + i] = (v + tau * (a + tau * (3.0 * c3 + tau * (4.0 * c4 + tau * 5.0 * c5)))) / length;
-    acceleration[i] = (a + tau * (6.0 * c3 + tau * (12.0 * c4 + tau * 20.0 * c5))) / (length * length);
+    const CoordinateMotion at = motion_between(motion_in(from, i), motion_in(to, i), length, tau);
+    y[i] = at.place;
+    y[count + i] = at.rate;
+    acceleration[i] = at.acceleration;
   }
   for (std::size_t i = 2 * count; i < y.size(); ++i) y[i] = from.y[i] + tau * (to.y[i] - from.y[i]);
 }

@@ -12,6 +12,16 @@
 
 namespace carom {
 
+/// One coordinate at one time, with its rate and acceleration.
+struct CoordinateMotion {
+  double place = 0.0, rate = 0.0, acceleration = 0.0;
+};
+/// A coordinate within a step, as a polynomial of degree 5 that has the motions at both ends. \param length
+/// of the step [s] \param tau part of it that is over
+[[nodiscard]] CAROM_API CoordinateMotion motion_between(const CoordinateMotion& from,
+                                                        const CoordinateMotion& to, double length,
+                                                        double tau);
+
 /// One end of a step.
 struct PathEnd {
   double time = 0.0;                 ///< [s]
@@ -20,8 +30,7 @@ struct PathEnd {
 };
 
 /// Writes the unknowns at a time within a step, of which the first `count` are coordinates, the next `count`
-/// their rates: coordinates as polynomials of degree 5 with both ends' rates and accelerations, the rates and
-/// accelerations of these, everything else linear in time.
+/// their rates: coordinates by motion_between(), everything else linear in time.
 CAROM_API void follow_path(const PathEnd& from, const PathEnd& to, std::size_t count, double time,
                            std::span<double> y, double* acceleration);
 

@@ -153,9 +153,9 @@ TEST(EventForces, WithoutBoundEndWhereContactsComeToFollowFromEachOther) {
   for (const FlowMethod method : {FlowMethod::adams, FlowMethod::one_step}) {
     SCOPED_TRACE(static_cast<int>(method));
     Simulation simulation(carom_test::MixedScene(7390).system(), EventDriven{.method = method});
-    simulation.run_until(0.452);
+    simulation.run_until(0.4515);
     const std::int64_t before = impacts_without_collision(simulation);
-    expect_agrees_with_time_stepping(simulation, 0.4523);
+    expect_agrees_with_time_stepping(simulation, 0.4518);
     EXPECT_GT(impacts_without_collision(simulation), before);
   }
 }
