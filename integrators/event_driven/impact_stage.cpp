@@ -95,7 +95,7 @@ void ImpactStage::resolve_island(std::span<const Index> pairs, ImpactOnset onset
                                  EventInstant& at) {
   list_touching(pairs, at);
   const bool captured = onset == ImpactOnset::closing;
-  if (!captured) leave_out_repeated(at.scales.gap_noise);
+  captured ? leave_out_apart(at) : leave_out_repeated(at.scales.gap_noise);
   const StrikeInput impact{.rules = rules_of(at),
                            .velocity = at.velocities(),
                            .speed_noise = at.scales.speed_noise,
@@ -163,6 +163,30 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
     // Before the jump of a driver it did not approach: there is nothing to give back.
     if (at.rate_jumps && at.before_at[i] != none) contact.remove_restitution();
   }
+}
+
+/// Leaves out contacts of a slow impact that are apart and not about to close: they would close with it.
+void ImpactStage::leave_out_apart(const EventInstant& at) {
+  ConstraintSet& touching = memory_->touching;
+  const double capture = capture_speed(memory_->places, at), limit = capture * capture;
+  std::size_t kept = 0;
+  bool leaves_out = false;
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    const Constraint& contact = touching[i];
+    if (!contact.attached && !at.touches(memory_->places[i])) {
+      const double speed = contact.normal_velocity(at.velocities());
+      const double fall = contact.normal_acceleration(at.now.acceleration.data());
+      const bool closes = fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit;
+      leaves_out = !closes && speed >= -at.scales.speed_noise;
+    } else if (!contact.attached) {
+      leaves_out = false;
+    }
+    if (leaves_out) continue;
+    if (kept != i) touching[kept] = std::move(touching[i]);
+    memory_->places[kept++] = memory_->places[i];
+  }
+  touching.resize(kept);
+  memory_->places.resize(kept);
 }
 
 /// Leaves out contacts that are listed twice, with what is attached to them: one contact is solved as such.
