@@ -44,7 +44,8 @@ Page lcp_cases();
 // Smooth motion.
 Page mechanisms();
 /// The page of mechanisms. \param watch sees each event-driven run of the windows before it begins
-Page mechanisms(const std::function<void(carom::Simulation&)>& watch);
+/// \param forty_until end of that of forty windows [s], which takes longer than all the others; up to 10 s
+Page mechanisms(const std::function<void(carom::Simulation&)>& watch, double forty_until = 10.0);
 Page springs();
 
 // Error against step and cost.

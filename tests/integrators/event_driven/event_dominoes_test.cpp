@@ -2,6 +2,7 @@
 // hardly anything is unique.
 
 #include "tests/integrators/event_driven/body_scenes.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 
@@ -64,9 +65,12 @@ TEST(EventDominoesLong, EightOfMuchFriction) {
 }
 
 TEST(EventDominoesLong, OfAllFrictionAndRestitution) {
+  int place = 0;
   for (const int count : {2, 3, 5, 8, 12}) {
     for (const double friction : {0.0, 0.2, 0.4, 0.6, 0.8}) {
-      for (const double restitution : {0.0, 0.1, 0.2, 0.3}) run({count, friction, restitution}, 2.0);
+      for (const double restitution : {0.0, 0.1, 0.2, 0.3}) {
+        if (carom_test::is_taken(place++)) run({count, friction, restitution}, 2.0);
+      }
     }
   }
 }
@@ -74,8 +78,11 @@ TEST(EventDominoesLong, OfAllFrictionAndRestitution) {
 // The heap behind the wave could not be stopped but with what pushes it, and came to rest contact by contact
 // after each impact: 263,255 events for friction 0.8 and restitution 0.1, in place of 12,158.
 TEST(EventDominoesLong, Twenty) {
+  int place = 0;
   for (const double friction : {0.2, 0.4, 0.8}) {
-    for (const double restitution : {0.0, 0.1}) run({20, friction, restitution}, 3.0);
+    for (const double restitution : {0.0, 0.1}) {
+      if (carom_test::is_taken(place++)) run({20, friction, restitution}, 3.0);
+    }
   }
 }
 
