@@ -3,6 +3,7 @@
 #include "tests/analytic/sphere_impact.h"
 #include "tests/energy/ledger_check.h"
 #include "tests/random.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 
@@ -107,7 +108,7 @@ TEST(ImpactGain, CanBeRefused) {
 TEST(ImpactGain, NeverWithOneCoefficientAndOneContact) {
   // T changes by P_n (y- + y+)/2 + P_t (x- + x+)/2 <= 0 for e_n = e_t and a fixed obstacle.
   carom_test::Random random(20250111);
-  for (int trial = 0; trial < 20000; ++trial) {
+  for (int trial = 0; trial < carom_test::count_of_samples(20000); ++trial) {
     const double e = trial % 7 == 0 ? 1.0 : random.uniform(0.0, 1.0);
     System system;
     system.add(

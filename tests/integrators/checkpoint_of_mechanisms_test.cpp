@@ -2,6 +2,7 @@
 
 #include "tests/integrators/same_run.h"
 #include "tests/random.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 
@@ -53,7 +54,7 @@ System held(System system) {
 /// Restores a run at each of its steps and compares the next one. \param springs whether loads turn with
 /// bodies
 void expect_same_bits(const TimeStepping& mode, bool springs) {
-  for (std::uint64_t run = 1; run <= 4; ++run) {
+  for (std::uint64_t run = 1; run <= carom_test::usual_or(4U, 1U); ++run) {
     const auto model = [&] {
       return springs ? held(mechanisms_beside_discs(run)) : mechanisms_beside_discs(run);
     };

@@ -2,6 +2,8 @@
 
 #include <carom/carom.h>
 
+#include "tests/shares.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,7 +62,7 @@ TEST(JointFrictionReversal, OfASliderCrankIsTheSameInBothModes) {
     // Of nine decimals.
     EXPECT_NEAR(angle(EventDriven{.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11}), exact, 2e-9);
     for (const ImpactTimes impacts : {ImpactTimes::at_step_start, ImpactTimes::located}) {
-      for (const double h : {1e-3, 5e-4, 7.3e-4, 1.37e-4}) {
+      for (const double h : carom_test::samples({1e-3, 5e-4, 7.3e-4, 1.37e-4})) {
         EXPECT_NEAR(angle(TimeStepping{.step = h, .impacts = impacts}), exact, 7.0 * h)
             << in_guide << " " << h;
       }

@@ -129,7 +129,7 @@ void expect_chains_lie(const carom_test::SeedRange& seeds) {
   EXPECT_LE(20 * failed, chains);
 }
 
-TEST(JointedContacts, ChainsOfRodsFallAndLie) { expect_chains_lie({1, 101}); }
+TEST(JointedContacts, ChainsOfRodsFallAndLie) { expect_chains_lie({1, carom_test::usual_or(101U, 31U)}); }
 TEST(JointedContactsLong, ChainsOfRodsFallAndLie) {
   expect_chains_lie(carom_test::seeds_from(101, 200, 250));
 }

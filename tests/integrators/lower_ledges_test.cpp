@@ -125,7 +125,7 @@ void expect_all_pass(SeedRange seeds) {
   }
 }
 
-TEST(LowerLedges, AllSlidersPassAllLedges) { expect_all_pass(seeds_from(1, 40)); }
+TEST(LowerLedges, AllSlidersPassAllLedges) { expect_all_pass(seeds_from(1, count_of_samples(40U))); }
 
 TEST(LowerLedgesLong, AllSlidersPassAllLedges) { expect_all_pass(seeds_from(100, 1000, 20000)); }
 

@@ -292,10 +292,10 @@ TEST(SeamsOfBodies, SideBySideAHigherOneIsAWall) {
   }
 }
 
-TEST(SeamsOfBodies, FloorsOfTilesAreFloors) { expect_floors(seeds_from(1, 20)); }
-TEST(SeamsOfBodies, SlidersOfTilesSlideOffABlock) { expect_sliders(seeds_from(1, 20)); }
+TEST(SeamsOfBodies, FloorsOfTilesAreFloors) { expect_floors(seeds_from(1, count_of_samples(20U))); }
+TEST(SeamsOfBodies, SlidersOfTilesSlideOffABlock) { expect_sliders(seeds_from(1, count_of_samples(20U))); }
 
-TEST(SeamsOfBodies, PairsSideBySideAreFloors) { expect_pairs(seeds_from(1, 20)); }
+TEST(SeamsOfBodies, PairsSideBySideAreFloors) { expect_pairs(seeds_from(1, count_of_samples(20U))); }
 
 TEST(SeamsOfBodiesLong, PairsSideBySideAreFloors) { expect_pairs(seeds_from(100, 500, 10000)); }
 TEST(SeamsOfBodiesLong, FloorsOfTilesAreFloors) { expect_floors(seeds_from(100, 500, 10000)); }

@@ -5,6 +5,7 @@
 #include <carom/contact/detection/narrow_phase.h>
 
 #include "tests/contact/detection/convex_reference.h"
+#include "tests/shares.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ using carom_test::reference_gap;
 using Gaps = std::array<GapPoint, 2>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double tolerance = 2e-14;  // sizes and distances are up to 5
-constexpr int samples = 3000;
+constexpr int samples = carom_test::count_of_samples(3000);
 
 OwnedOutline of_form(Random& random, OutlineForm form) {
   OwnedOutline out = random_outline(random);

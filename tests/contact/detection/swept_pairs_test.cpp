@@ -4,6 +4,7 @@
 #include "tests/contact/detection/moved_model.h"
 #include "tests/model_error.h"
 #include "tests/random.h"
+#include "tests/shares.h"
 
 #include <carom/carom.h>
 #include <carom/contact/detection/body_pairs.h>
@@ -122,8 +123,9 @@ bool closes_alone(const MovedModel& model, const ContactPair& pair) {
 
 TEST(SweptPairs, ListAllThatCloseAtAnyTime) {
   Random random(1);
+  constexpr unsigned trials = carom_test::count_of_samples(100U);
   std::size_t closed = 0, listed = 0, all = 0;
-  for (int trial = 0; trial < 100; ++trial) {
+  for (unsigned trial = 0; trial < trials; ++trial) {
     const MovedModel model = random_model(random);
     SweptPairs pairs(model.assembly, model.detector, FlatPairs::all);
     ASSERT_FALSE(pairs.find_outlines(model.path).empty());  // the drum is everywhere
@@ -140,7 +142,7 @@ TEST(SweptPairs, ListAllThatCloseAtAnyTime) {
     listed += found.size();
   }
   // Else hardly anything was tried, or everything is listed.
-  EXPECT_GT(closed, 300U);
+  EXPECT_GT(closed, 3 * trials);
   EXPECT_LT(2 * listed, all);
 }
 

@@ -8,6 +8,7 @@
 
 #include "tests/contact/brute_force.h"
 #include "tests/contact/random_problems.h"
+#include "tests/shares.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +42,7 @@ bool listed(const SolutionList& list, const std::vector<contact_test::Quad>& imp
 TEST(SlidingProblems, ChainAndListAgreeWithBruteForce) {
   SolverChain chain;
   int firm = 0, none = 0, several = 0;
-  constexpr int problems = 6000;
+  constexpr int problems = carom_test::count_of_samples(6000);
   for (std::uint64_t seed = 0; seed < problems; ++seed) {
     SCOPED_TRACE(seed);
     const int groups = 1 + static_cast<int>(seed % 3);

@@ -48,6 +48,7 @@ TEST(DeadPoints, ASliderCrankLeavesThemWithFrictionInItsGuide) {
   for (const bool outer : {true, false}) {
     for (const bool by_weight : {true, false}) {
       for (const bool by_force : {true, false}) {
+        if (carom_test::with_sanitizers && by_force != by_weight) continue;
         SliderCrank made(outer);
         if (by_weight) {
           made.system.add(Gravity{{0.0, -9.81}});
@@ -188,7 +189,7 @@ double quantile(const std::vector<double>& sorted, double part) {
 }
 
 TEST(DeadPoints, RandomMechanismsGoOnAsInTimeStepping) {
-  const std::vector<double> distances = compare_modes({1, 9});
+  const std::vector<double> distances = compare_modes({1, carom_test::usual_or(9U, 3U)});
   EXPECT_LT(distances.back(), 1e-3);
 }
 

@@ -3,6 +3,7 @@
 #include <carom/carom.h>
 
 #include "tests/integrators/throws.h"
+#include "tests/shares.h"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +19,9 @@ using namespace carom::planar;
 constexpr double length = 0.3, mass = 1.0, gravity = 9.81;  // [m, kg, m/s^2]
 constexpr double weight_energy = mass * gravity * length;   // between its lowest and its highest place [J]
 const double unit = std::sqrt(length / gravity);            // of time [s]
+
+// Fewer steps and angles with sanitizers.
+constexpr double part_apart = carom_test::usual_or(0.05, 0.15), angle_apart = carom_test::usual_or(0.1, 0.2);
 
 /// A rod that hangs at its end, at an angle from the horizontal [rad].
 System pendulum(double angle) {
@@ -41,7 +45,7 @@ struct Outcomes {
 Outcomes run(double step, ForceRule rule) {
   constexpr int steps = 40;
   Outcomes seen;
-  for (double angle = -1.5; angle < 1.5; angle += 0.1) {
+  for (double angle = -1.5; angle < 1.5; angle += angle_apart) {
     Simulation simulation(pendulum(angle), TimeStepping{.step = step, .force_rule = rule});
     double before = simulation.energy().total();
     try {
@@ -64,7 +68,7 @@ Outcomes run(double step, ForceRule rule) {
 }
 
 TEST(FarTurns, StepsThatAreMadeAreMotions) {
-  for (double part = 0.1; part < 1.6; part += 0.05) {
+  for (double part = 0.1; part < 1.6; part += part_apart) {
     const Outcomes seen = run(part * unit, ForceRule::trapezoidal);
     // The error of a step grows with its third power: 0.11 at 0.65, and farther turns are mostly refused.
     EXPECT_LE(seen.largest_gain, 0.15) << part;
@@ -78,7 +82,7 @@ TEST(FarTurns, StepsThatAreMadeAreMotions) {
 }
 
 TEST(FarTurns, EnergyMomentumKeepsTheEnergyOrRefuses) {
-  for (double part = 0.1; part < 1.6; part += 0.05) {
+  for (double part = 0.1; part < 1.6; part += part_apart) {
     const Outcomes seen = run(part * unit, ForceRule::energy_momentum);
     // What the tolerance of 1e-12 m leaves, times forces of up to five times the weight.
     EXPECT_LE(seen.largest_gain, 2e-11) << part;

@@ -2,6 +2,8 @@
 
 #include <carom/carom.h>
 
+#include "tests/shares.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,7 +71,7 @@ TEST(RestCertified, StepsAtRestAskNoSolver) {
     ASSERT_LE(fastest(simulation.state()), 1e-13) << boxes;
     const State start = simulation.state();
     const ChainStatistics before = simulation.contact_statistics();
-    constexpr int steps = 1000;
+    constexpr int steps = carom_test::count_of_samples(1000);
     for (int i = 0; i < steps; ++i) simulation.step();
     const ChainStatistics after = simulation.contact_statistics();
     const std::int64_t problems = after.problems - before.problems;

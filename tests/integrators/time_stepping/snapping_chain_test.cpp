@@ -2,6 +2,8 @@
 
 #include <carom/carom.h>
 
+#include "tests/shares.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,8 +45,8 @@ System folded_chain(int bars) {
 constexpr double available = mass * 9.81 * length;  // [J]
 
 TEST(SnappingChain, NoStepEndsWhereTheIterationIsLost) {
-  for (const int bars : {30, 40, 50, 80}) {
-    for (const double step : {1e-3, 5e-4}) {
+  for (const int bars : carom_test::samples({30, 40, 50, 80})) {
+    for (const double step : carom_test::samples({1e-3, 5e-4})) {
       for (const ForceRule rule : {ForceRule::trapezoidal, ForceRule::energy_momentum}) {
         Simulation simulation(folded_chain(bars), TimeStepping{.step = step, .force_rule = rule});
         const std::string what = std::to_string(bars) + " bars, step " + std::to_string(step);
@@ -96,7 +98,8 @@ TEST(SnappingChain, SuggestedStepsComeThrough) {
 }
 
 TEST(SnappingChain, StepControlComesThrough) {
-  Simulation simulation(folded_chain(50), TimeStepping{.step = 1e-3, .control = StepControl{}});
+  Simulation simulation(folded_chain(carom_test::usual_or(50, 30)),
+                        TimeStepping{.step = 1e-3, .control = StepControl{}});
   const double begin = simulation.energy().total();
   simulation.run_until(end_time);
   // Steps across the snap cost some of the energy; with a fixed step of 1e-4 s 5e-3 J.

@@ -108,7 +108,7 @@ TEST(StruckCouplings, LinearMomentumIsKept) {
 /// \param impacts when \param order of the step that errors fall with at least \param largest at the shortest
 void expect_convergence(ImpactTimes impacts, double order, double largest) {
   for (const Coupling coupling : couplings) {
-    for (const double restitution : {0.5, 1.0}) {
+    for (const double restitution : carom_test::samples({0.5, 1.0})) {
       Simulation reference(struck_pair(coupling, restitution), EventDriven{.method = FlowMethod::bdf});
       reference.run_until(0.5);
       const auto error = [&](double step) {
@@ -188,7 +188,10 @@ int count_failures(carom_test::SeedRange seeds, const TimeStepping& options, dou
   return failed;
 }
 
-TEST(StruckCouplings, RandomScenesRun) { EXPECT_LE(count_failures({1000, 1040}, {.step = 2e-3}), 1); }
+TEST(StruckCouplings, RandomScenesRun) {
+  constexpr unsigned scenes = carom_test::count_of_samples(40U);
+  EXPECT_LE(count_failures({1000, 1000 + scenes}, {.step = 2e-3}), carom_test::usual_or(1, 0));
+}
 
 // Couplings up to 1e4 N/m: before contact was within the linearised step 98 of 300 of these scenes failed at
 // 2 ms. Of 1,500 none does, 3 under energy_momentum, 1 where impacts are located; one in a hundred is the
