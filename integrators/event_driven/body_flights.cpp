@@ -41,9 +41,10 @@ BodyMoment BodyFlight::moment(double at) const {
   const double s = at - time;
   BodyMoment out = begin;
   for (std::size_t k = 0; k < out.size(); ++k) {
-    const auto& [place, rate, acceleration] = begin[k];
+    const CoordinateMotion& from = begin[k];
+    const double pull = from.acceleration;
     if (is_free) {
-      out[k] = {place + s * (rate + 0.5 * s * acceleration), rate + s * acceleration, acceleration};
+      out[k] = {from.place + s * (from.rate + 0.5 * s * pull), from.rate + s * pull, pull};
     } else if (due < never && due > time) {
       out[k] = motion_between(begin[k], end[k], due - time, s / (due - time));
     }
