@@ -94,10 +94,11 @@ void BodyFlights::start(const State& state, double extra) {
     BodyFlight& flight = flights_[body];
     if (flight.reach < 0.0) continue;
     const BodySlot slot = assembly_->layout()->bodies()[body];
-    flight.place = {state.q[slot.q], state.q[slot.q + 1]};
+    flight.begin = {};
+    for (Index k = 0; k < 2; ++k) flight.begin[k].place = state.q[slot.q + k];
     flight.time = state.time;
-    low = low.cwiseMin(flight.place);
-    high = high.cwiseMax(flight.place);
+    low = low.cwiseMin(flight.place());
+    high = high.cwiseMax(flight.place());
     size += 2.0 * flight.reach;
     count += 1.0;
   }
@@ -111,7 +112,7 @@ void BodyFlights::start(const State& state, double extra) {
     const BodyFlight& flight = flights_[body];
     if (flight.reach < 0.0) continue;
     const double reach = flight.reach + extra;
-    volumes_.set(body, {flight.place.array() - reach, flight.place.array() + reach});
+    volumes_.set(body, {flight.place().array() - reach, flight.place().array() + reach});
   }
   std::fill(horizons_.begin(), horizons_.end(), state.time);
 }
@@ -129,16 +130,13 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
       }
     }
   };
+  const BodySlots& slots = assembly_->layout()->bodies();
   for_flights([&](Index body, BodyFlight& flight) {
-    const BodySlot slot = assembly_->layout()->bodies()[body];
     flight.time = time;
-    flight.place = {now.state.q[slot.q], now.state.q[slot.q + 1]};
-    flight.velocity = {now.state.v[slot.v], now.state.v[slot.v + 1]};
-    flight.acceleration = {now.acceleration[slot.v], now.acceleration[slot.v + 1]};
     flight.is_free = is_free;
     flight.is_curve = is_curve;
     flight.speed = 0.0;
-    flight.begin = moment_in(now, slot);
+    flight.begin = moment_in(now, slots[body]);
   });
   const double due = JoinableGroup(group).due();
   const bool rests = !(due < never);
@@ -146,25 +144,24 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
   for_flights([&](Index body, BodyFlight& flight) {
     flight.due = due;
     if (rests) {  // but for rounding
-      flight.velocity = flight.acceleration = Vec<2>::Zero();
       for (CoordinateMotion& at : flight.begin) at.rate = at.acceleration = 0.0;
     }
     if (is_free) return;
-    flight.speed = (flight.velocity - frame_).norm();  // of bodies at rest too, in a frame that goes on
+    flight.speed = (flight.velocity() - frame_).norm();  // of bodies at rest too, in a frame that goes on
     if (rests) return;
     constexpr double unseen = 2.0;
-    flight.end = moment_in(end, assembly_->layout()->bodies()[body]);
+    flight.end = moment_in(end, slots[body]);
     for (const CoordinateMotion& at : flight.end)
       flight.is_curve = flight.is_curve && std::isfinite(at.acceleration);
     const Vec<2> later(flight.end[0].rate, flight.end[1].rate),
         pull(flight.end[0].acceleration, flight.end[1].acceleration);
     flight.speed = std::max(flight.speed, (later - frame_).norm()) +
-                   unseen * (due - time) * std::max(flight.acceleration.norm(), pull.norm());
+                   unseen * (due - time) * std::max(flight.acceleration().norm(), pull.norm());
   });
   double horizon = due;
   for_flights([&](Index, const BodyFlight& flight) {
-    const double v = is_free ? (flight.velocity - frame_).norm() : flight.speed;
-    const double a = is_free ? flight.acceleration.norm() : 0.0;
+    const double v = is_free ? (flight.velocity() - frame_).norm() : flight.speed;
+    const double a = is_free ? flight.acceleration().norm() : 0.0;
     const double length = 2.0 * travel_ / (v + std::sqrt(v * v + 2.0 * a * travel_));
     if (time + length > time) horizon = std::min(horizon, time + length);
   });
@@ -176,18 +173,18 @@ double BodyFlights::follow(ClockGroup& group, double time, MotionSample& now, Mo
 /// Sets the volume of a body that it covers within a length of time.
 void BodyFlights::sweep(Index body, double length) {
   const BodyFlight& flight = flights_[body];
-  const Vec<2> velocity = flight.velocity - frame_,
-               place = flight.place - (flight.time - frame_time_) * frame_;
+  const Vec<2> velocity = flight.velocity() - frame_,
+               place = flight.place() - (flight.time - frame_time_) * frame_;
   Box<2> box;
   for (int k = 0; k < 2; ++k) {
     if (flight.is_free) {
-      span_parabola(place[k], velocity[k], flight.acceleration[k], length, box.min[k], box.max[k]);
+      span_parabola(place[k], velocity[k], flight.acceleration()[k], length, box.min[k], box.max[k]);
     } else {
       box.min[k] = place[k] - length * flight.speed;
       box.max[k] = place[k] + length * flight.speed;
     }
     const double size =
-        std::max({std::abs(box.min[k]), std::abs(box.max[k]), std::abs(flight.place[k])}) + flight.reach;
+        std::max({std::abs(box.min[k]), std::abs(box.max[k]), std::abs(flight.place()[k])}) + flight.reach;
     const double reach = flight.reach + extra_ + place_rounding * size;
     box.min[k] -= reach;
     box.max[k] += reach;

@@ -31,11 +31,8 @@ using BodyMoment = std::array<CoordinateMotion, 3>;
 
 /// The motion of a body from a time on.
 struct CAROM_API BodyFlight {
-  double time = 0.0;                     ///< [s]
-  Vec<2> place = Vec<2>::Zero();         ///< place at that time [m]
-  Vec<2> velocity = Vec<2>::Zero();      ///< velocity at that time [m/s]
-  Vec<2> acceleration = Vec<2>::Zero();  ///< acceleration at that time [m/s^2]
-  double reach = -1.0;                   ///< of its outlines from there [m]; < 0: it has none
+  double time = 0.0;       ///< [s]
+  double reach = -1.0;     ///< of its outlines from its centre of mass [m]; < 0: it has none
   double speed = 0.0;      ///< bound of it in the frame of the volumes, where it does not fly freely [m/s]
   Index component = none;  ///< component of the body
   bool is_free = false;    ///< nothing but uniform fields acts: the acceleration stays
@@ -45,6 +42,12 @@ struct CAROM_API BodyFlight {
   double due = 0.0;       ///< end of the step ahead, or its event; infinite at rest [s]
   BodyMoment begin, end;  ///< at `time` and `due`
 
+  /// Place of the centre of mass at `time` [m].
+  [[nodiscard]] Vec<2> place() const { return {begin[0].place, begin[1].place}; }
+  /// Velocity of the centre of mass at `time` [m/s].
+  [[nodiscard]] Vec<2> velocity() const { return {begin[0].rate, begin[1].rate}; }
+  /// Acceleration of the centre of mass at `time` [m/s^2].
+  [[nodiscard]] Vec<2> acceleration() const { return {begin[0].acceleration, begin[1].acceleration}; }
   /// The motion at a time from `time` to `due`, of a body that flies freely or follows a curve.
   [[nodiscard]] BodyMoment moment(double at) const;
 };

@@ -82,13 +82,14 @@ void GroupMeetings::keep(const Appointment& at, EventBalance& balance) {
     ClockGroup& other = groups_->of(at.b);
     if (&group == &other) return;
     double time = at.time;
-    if (at.guess.pair.body != none) time = search_.locate(at);
+    if (at.guess.pair.body != none) time = search_.locate(at.guess);
     if (time > at.time) {
       if (time < never) queue_.add(time, at.a, at.b);
       return;
     }
     list_.assign({&group, &other});
     search_.add_near(time, near(), list_);
+    // Found a little earlier than guessed, it may be before steps that have begun since.
     for (const ClockGroup* const meets : list_) time = std::max(time, meets->now());
     ClockGroup& joined = join(time, balance);
     JoinableGroup(joined).count_meeting();

@@ -35,6 +35,14 @@ bool is_repeated(const Constraint& contact, const Constraint& other, double gap_
 
 const ImpactRules& rules_of(const EventInstant& at) { return at.motion.model().options->impact_rules; }
 
+/// True of what is slow, but approaches or is about to close: it closes with what touches.
+bool closes_soon(const Constraint& contact, double capture, const EventInstant& at) {
+  const double speed = contact.normal_velocity(at.velocities());
+  const double fall = contact.normal_acceleration(at.now.acceleration.data());
+  return speed < -at.scales.speed_noise ||
+         (fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= capture * capture);
+}
+
 }  // namespace
 
 bool ImpactStage::resolve(EventInstant& at) {
@@ -93,9 +101,9 @@ double ImpactStage::fastest_approach(std::span<const Index> pairs, const EventIn
 /// \param counts of the island at this instant before
 void ImpactStage::resolve_island(std::span<const Index> pairs, ImpactOnset onset, ImpactCounts& counts,
                                  EventInstant& at) {
-  list_touching(pairs, at);
   const bool captured = onset == ImpactOnset::closing;
-  captured ? leave_out_apart(at) : leave_out_repeated(at.scales.gap_noise);
+  list_touching(pairs, captured, at);
+  if (!captured) leave_out_repeated(at.scales.gap_noise);
   const StrikeInput impact{.rules = rules_of(at),
                            .velocity = at.velocities(),
                            .speed_noise = at.scales.speed_noise,
@@ -148,13 +156,17 @@ bool ImpactStage::stops(const IslandProblem& problem) {
   return left <= most_left * approach;
 }
 
-/// Lists the contacts of an impact.
-void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant& at) {
+/// Lists the contacts of an impact. \param captured it is a slow one
+void ImpactStage::list_touching(std::span<const Index> pairs, bool captured, const EventInstant& at) {
   ConstraintSet& touching = memory_->touching;
   touching.clear();
   memory_->places.clear();
+  const double capture = captured ? capture_speed(pairs, at) : 0.0;
+  bool is_listed = false;
   for (const Index i : pairs) {
-    if (!at.is_struck(i)) continue;
+    if (!at.motion.model().pairs[i].rolling)  // rolling resistance goes with its contact
+      is_listed = at.is_struck(i) && (!captured || at.touches(i) || closes_soon(at.contacts[i], capture, at));
+    if (!is_listed) continue;
     const bool follows_force = at.motion.joints().depends_on_joint_force(at.contacts[i]);
     if (!takes_part(at.contacts[i], impacts_of_events, follows_force)) continue;
     Constraint& contact = touching.add(at.contacts[i]);
@@ -163,30 +175,6 @@ void ImpactStage::list_touching(std::span<const Index> pairs, const EventInstant
     // Before the jump of a driver it did not approach: there is nothing to give back.
     if (at.rate_jumps && at.before_at[i] != none) contact.remove_restitution();
   }
-}
-
-/// Leaves out contacts of a slow impact that are apart and not about to close: they would close with it.
-void ImpactStage::leave_out_apart(const EventInstant& at) {
-  ConstraintSet& touching = memory_->touching;
-  const double capture = capture_speed(memory_->places, at), limit = capture * capture;
-  std::size_t kept = 0;
-  bool leaves_out = false;
-  for (std::size_t i = 0; i < touching.size(); ++i) {
-    const Constraint& contact = touching[i];
-    if (!contact.attached && !at.touches(memory_->places[i])) {
-      const double speed = contact.normal_velocity(at.velocities());
-      const double fall = contact.normal_acceleration(at.now.acceleration.data());
-      const bool closes = fall < 0.0 && speed * speed - 2.0 * contact.gap * fall <= limit;
-      leaves_out = !closes && speed >= -at.scales.speed_noise;
-    } else if (!contact.attached) {
-      leaves_out = false;
-    }
-    if (leaves_out) continue;
-    if (kept != i) touching[kept] = std::move(touching[i]);
-    memory_->places[kept++] = memory_->places[i];
-  }
-  touching.resize(kept);
-  memory_->places.resize(kept);
 }
 
 /// Leaves out contacts that are listed twice, with what is attached to them: one contact is solved as such.

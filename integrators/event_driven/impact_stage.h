@@ -89,9 +89,8 @@ private:
                       EventInstant& at);
   [[nodiscard]] StrikeAnswer solve(ImpactLaw law, EventInstant& at);
   [[nodiscard]] bool stops(const IslandProblem& problem);
-  void list_touching(std::span<const Index> pairs, const EventInstant& at);
+  void list_touching(std::span<const Index> pairs, bool captured, const EventInstant& at);
   void leave_out_repeated(double gap_noise);
-  void leave_out_apart(const EventInstant& at);
   void close_captured(std::span<const Index> pairs, EventInstant& at);
   // Contacts that a projection closes: those that part slower than the capture speed, where those that slide
   // slowly are stopped too; the same without stopping; or those only that do not part.

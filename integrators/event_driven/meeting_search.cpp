@@ -17,15 +17,24 @@ namespace {
 /// Two bodies: by their flights where these tell, else by the steps of their groups.
 class BodiesPath final : public PairPath {
 public:
-  BodiesPath(const BodyPairBound& bound, const BodyFlight& a, const BodyFlight& b, ClockGroup& of_a,
-             ClockGroup& of_b, MotionSample& out)
-      : bound_(&bound), a_(&a), b_(&b), of_a_(&of_a), of_b_(&of_b), out_(&out) {}
+  BodiesPath(const BodyPairBound& bound, const ContactPair& pair, const BodyFlights& flights,
+             GroupSet& groups, MotionSample& out)
+      : bound_(&bound),
+        a_(&flights.of(pair.body)),
+        b_(&flights.of(pair.other)),
+        of_a_(&groups.of(a_->component)),
+        of_b_(&groups.of(b_->component)),
+        out_(&out) {}
 
   /// True if flights tell the exact motion of both.
   [[nodiscard]] bool is_free() const { return a_->is_free && b_->is_free; }
   /// True if flights tell the motion of both, as exactly as steps are.
   [[nodiscard]] bool is_told() const {
     return (a_->is_free || a_->is_curve) && (b_->is_free || b_->is_curve);
+  }
+  /// Between landings: by flights, or by samples of groups, kept for others that ask for the same time.
+  [[nodiscard]] PathSample between(double time, GroupSamples& samples) {
+    return is_told() ? sample(time, PathLook::between) : samples.at(time, *of_a_, *of_b_).on_path();
   }
   [[nodiscard]] PathSample sample(double time, PathLook how) override {
     if (is_free() || (how == PathLook::between && is_told())) {
@@ -84,23 +93,16 @@ const MotionSample& GroupSamples::at(double time, ClockGroup& a, ClockGroup& b) 
   return at_;
 }
 
-/// Calls f(bodies, other group, pairs) for bodies of other groups whose volumes overlap those of a group.
+/// Calls f(numbers of two bodies in the order of assembly, other group) for bodies of other groups whose
+/// volumes overlap those of a group.
 template <class F>
 void MeetingSearch::for_neighbours(ClockGroup& group, F&& f) {
   for (const MotionUnknowns::Part& part : group.motion().model().parts()) {
     for (Index body = part.ranges.bodies.begin; body < part.ranges.bodies.end; ++body) {
-      const BodyFlight& flight = flights_->of(body);
-      if (flight.reach < 0.0) continue;
+      if (flights_->of(body).reach < 0.0) continue;
       flights_->volumes().for_overlapping(body, [&](Index other) {
-        const BodyFlight& of_other = flights_->of(other);
-        ClockGroup& second = groups_->of(of_other.component);
-        if (&second == &group) return;
-        // In the order of assembly, whoever asks.
-        if (body < other) {
-          f(std::array{body, other}, Bodies{flight, of_other, group, second});
-        } else {
-          f(std::array{other, body}, Bodies{of_other, flight, second, group});
-        }
+        ClockGroup& second = groups_->of(flights_->of(other).component);
+        if (&second != &group) f(std::array{std::min(body, other), std::max(body, other)}, second);
       });
     }
   }
@@ -109,60 +111,53 @@ void MeetingSearch::for_neighbours(ClockGroup& group, F&& f) {
 void MeetingSearch::find(ClockGroup& group, double time, MeetingQueue& queue) {
   begins_.forget();
   ends_.forget();
-  for_neighbours(group, [&](const std::array<Index, 2>& numbers, const Bodies& bodies) {
+  for_neighbours(group, [&](const std::array<Index, 2>& numbers, const ClockGroup&) {
+    const BodyFlight &a = flights_->of(numbers[0]), &b = flights_->of(numbers[1]);
     pairs_.clear();
     groups_->pairs().append(numbers, pairs_);
     for (const ContactPair& pair : pairs_) {
-      const double at = closing(bodies, pair, time, Wanted::guess);
+      const double at = closing(pair, time, Wanted::guess);
       if (!(at < never)) continue;
-      const bool is_exact = bodies.a.is_free && bodies.b.is_free;
-      queue.add(at, bodies.a.component, bodies.b.component, is_exact ? Guess{} : Guess{pair, time});
+      queue.add(at, a.component, b.component, a.is_free && b.is_free ? Guess{} : Guess{pair, time});
     }
   });
 }
 
-double MeetingSearch::locate(const Appointment& at) {
+double MeetingSearch::locate(const Guess& guess) {
   begins_.forget();
   ends_.forget();
-  const ContactPair& pair = at.guess.pair;
-  const std::array of{std::min(pair.body, pair.other), std::max(pair.body, pair.other)};
-  const Bodies bodies{flights_->of(of[0]), flights_->of(of[1]), groups_->of(at.a), groups_->of(at.b)};
-  return closing(bodies, pair, at.guess.from, Wanted::exact);
+  return closing(guess.pair, guess.from, Wanted::exact);
 }
 
 /// Rounding of gaps, not above that of the group of both.
-double MeetingSearch::noise(const Bodies& bodies, const BodyPairBound& bound) const {
-  const std::vector<double>& lengths = bodies.of_a.motion().memory().closure.lengths;
-  double size = 0.0;
-  for (const BodyFlight* flight : {&bodies.a, &bodies.b}) {
-    size = std::max(size, flight->place.cwiseAbs().maxCoeff());
-  }
+double MeetingSearch::noise(const ContactPair& pair, const BodyPairBound& bound) const {
+  const BodyFlight &a = flights_->of(pair.body), &b = flights_->of(pair.other);
+  const std::vector<double>& lengths = groups_->of(a.component).motion().memory().closure.lengths;
+  double size = std::max(a.place().cwiseAbs().maxCoeff(), b.place().cwiseAbs().maxCoeff());
   for (const BodySlot& slot : {bound.a, bound.b}) {
     if (slot.rotation != none) size = std::max(size, size_of_body(lengths[slot.v + 2]));
   }
   return gap_noise_of(size, *options_);
 }
 
-double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, double begin, Wanted wanted) {
-  const double end = std::min(flights_->horizon(bodies.a.component), flights_->horizon(bodies.b.component));
+double MeetingSearch::closing(const ContactPair& pair, double begin, Wanted wanted) {
+  const double end = std::min(flights_->horizon(flights_->of(pair.body).component),
+                              flights_->horizon(flights_->of(pair.other).component));
   if (!(end > begin)) return never;
   const BodyPairBound bound = bound_of_pair(detector_->outlines(), pair);
   if (!bound.closes_alone()) return never;
   const PairGap gap{*detector_, pair, &bound};
-  const bool in_order = &bodies.a == &flights_->of(pair.body);
-  BodiesPath path(bound, flights_->of(pair.body), flights_->of(pair.other),
-                  in_order ? bodies.of_a : bodies.of_b, in_order ? bodies.of_b : bodies.of_a, at_);
+  BodiesPath path(bound, pair, *flights_, *groups_, at_);
   double speed = 0.0, pull = 0.0;
   const auto look = [&](double time, GroupSamples& samples) -> GapLook {
-    const PathSample at = path.is_told() ? path.sample(time, PathLook::between)
-                                         : samples.at(time, bodies.of_a, bodies.of_b).on_path();
+    const PathSample at = path.between(time, samples);
     speed = std::max(speed, bound.most_speed(at.state.v, nullptr));
     pull = std::max(pull, bound.most_speed(at.acceleration, nullptr));
     return {time, true, gap_in(gap, at)};
   };
   const GapLook from = look(begin, begins_), to = look(end, ends_);
   ClosingRule rule;
-  rule.noise = noise(bodies, bound);
+  rule.noise = noise(pair, bound);
   rule.fine = std::max(fine_gap(*options_), rule.noise);  // far from the origin gaps are not known better
   rule.found = 0.25 * rule.noise;
   rule.flies_freely = path.is_free();
@@ -180,19 +175,14 @@ double MeetingSearch::closing(const Bodies& bodies, const ContactPair& pair, dou
 }
 
 /// The least gap of two bodies at a time, or a lower bound of it.
-double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time) {
+double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, double time) {
   pairs_.clear();
   groups_->pairs().append(numbers, pairs_);
   double least = never;
   for (const ContactPair& pair : pairs_) {
     const BodyPairBound bound = bound_of_pair(detector_->outlines(), pair);
-    const PairGap gap{*detector_, pair, &bound};
-    const bool in_order = &bodies.a == &flights_->of(pair.body);
-    BodiesPath path(bound, flights_->of(pair.body), flights_->of(pair.other),
-                    in_order ? bodies.of_a : bodies.of_b, in_order ? bodies.of_b : bodies.of_a, at_);
-    const PathSample at = path.is_told() ? path.sample(time, PathLook::between)
-                                         : begins_.at(time, bodies.of_a, bodies.of_b).on_path();
-    least = std::min(least, gap_in(gap, at).value);
+    BodiesPath path(bound, pair, *flights_, *groups_, at_);
+    least = std::min(least, gap_in({*detector_, pair, &bound}, path.between(time, begins_)).value);
   }
   return least;
 }
@@ -200,10 +190,9 @@ double MeetingSearch::least_gap(const std::array<Index, 2>& numbers, const Bodie
 void MeetingSearch::add_near(double time, double near, std::vector<ClockGroup*>& list) {
   begins_.forget();
   for (std::size_t i = 0; i < list.size(); ++i) {
-    for_neighbours(*list[i], [&](const std::array<Index, 2>& numbers, const Bodies& bodies) {
-      ClockGroup* const other = &bodies.of_a == list[i] ? &bodies.of_b : &bodies.of_a;
-      if (std::find(list.begin(), list.end(), other) != list.end()) return;
-      if (least_gap(numbers, bodies, time) <= near) list.push_back(other);
+    for_neighbours(*list[i], [&](const std::array<Index, 2>& numbers, ClockGroup& other) {
+      if (std::find(list.begin(), list.end(), &other) != list.end()) return;
+      if (least_gap(numbers, time) <= near) list.push_back(&other);
     });
   }
 }

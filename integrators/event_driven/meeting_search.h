@@ -59,24 +59,20 @@ public:
   /// Makes appointments for all meetings of a group with others from a time on, before the horizons of both.
   /// Times of bodies that do not fly freely are guesses.
   void find(ClockGroup& group, double time, MeetingQueue& queue);
-  /// When the meeting of a guess is on the exact motion; infinite: there is none. \param at due, valid
-  [[nodiscard]] double locate(const Appointment& at);
+  /// When the meeting of a guess is on the exact motion [s]; infinite: there is none. \param guess of an
+  /// appointment that is due and not void
+  [[nodiscard]] double locate(const Guess& guess);
   /// Adds all groups that are as near to groups of a list as `near` [m], or to those added. \param time
   /// within the horizons of all
   void add_near(double time, double near, std::vector<ClockGroup*>& list);
 
 private:
-  /// Two bodies of two groups.
-  struct Bodies {
-    const BodyFlight &a, &b;
-    ClockGroup &of_a, &of_b;
-  };
   template <class F>
   void for_neighbours(ClockGroup& group, F&& f);
   enum class Wanted : std::uint8_t { guess, exact };
-  [[nodiscard]] double closing(const Bodies& bodies, const ContactPair& pair, double begin, Wanted wanted);
-  [[nodiscard]] double least_gap(const std::array<Index, 2>& numbers, const Bodies& bodies, double time);
-  [[nodiscard]] double noise(const Bodies& bodies, const BodyPairBound& bound) const;
+  [[nodiscard]] double closing(const ContactPair& pair, double begin, Wanted wanted);
+  [[nodiscard]] double least_gap(const std::array<Index, 2>& numbers, double time);
+  [[nodiscard]] double noise(const ContactPair& pair, const BodyPairBound& bound) const;
 
   const Detector* detector_;
   GroupSet* groups_;
