@@ -109,7 +109,7 @@ std::vector<ContactPair> Detector::pairs(Index component) const {
 
 void Detector::contact(const ContactPair& pair, const StateView& state, const Evaluation& evaluation,
                        const GroundPlaces& places, Constraint& out) const {
-  assert(!has_moving_ground() || places.time() == state.time);
+  assert(pair.ground_shape == none || !moves(*this, pair) || places.time() == state.time);
   if (pair.rolling) {
     ContactPair resisted = pair;
     resisted.rolling = false;
