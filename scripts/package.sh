@@ -46,6 +46,9 @@ install() { "$folder/$1/bin/pip" -q install "${@:2}"; }
 # Not optimised: what is tested is that it builds, and runs.
 quick=(-C cmake.define.CAROM_PYTHON_OPTIONS=-O0 -C cmake.define.CMAKE_CXX_FLAGS_RELEASE=-O0)
 
+# By Clang where there is one: that costs half where nothing is optimised. GCC compiles what scripts/python.sh tests.
+if command -v clang++ >/dev/null; then export CXX=clang++; fi
+
 # From the root, over the installed library.
 check "a fresh environment for the root" fresh root
 check "pip install . over an installed library" install root . "${quick[@]}" -C "build-dir=$folder/build-root" \
@@ -62,9 +65,8 @@ lists() { cmp <(tar tzf "$folder"/archives/./carom-*.tar.gz | sort) <(tar tzf "$
 check "archives are the same" lists
 tar xzf "$folder"/archives/./carom-*.tar.gz -C "$folder/sources" --strip-components=1
 
-# Compiled once for the wheel and for the installation, by what is in the environment. Whole rooms of the library at a
-# time, and by Clang where there is one: each costs half where nothing is optimised. GCC compiles the other installations.
-if command -v clang++ >/dev/null; then export CXX=clang++; fi
+# Compiled once for the wheel and for the installation, by what is in the environment, whole rooms of the library at a
+# time.
 own=(--no-build-isolation "$folder/sources" "${quick[@]}" -C "build-dir=$folder/build-archive"
   -C cmake.define.CAROM_PYTHON_BUILD_LIBRARY=ON -C cmake.define.CAROM_PRECOMPILE_LIBRARY=ON
   -C cmake.define.CAROM_BATCH_SIZE=64)

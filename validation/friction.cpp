@@ -5,8 +5,6 @@
 namespace validation {
 namespace {
 
-double depth_for(const Mode& mode) { return std::holds_alternative<TimeStepping>(mode) ? 1e-9 : 0.0; }
-
 void add_ramp(Page& page, const Mode& mode) {
   const Clock clock;
   Comparison places, times;

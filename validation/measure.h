@@ -95,6 +95,10 @@ inline std::string setting(const TimeStepping& options) {
   return "h = " + short_text(options.step) + (located ? " s, impacts located" : " s");
 }
 
+/// Depth at which a body starts in contact [m]: in time stepping a little inside, so that the contact is seen
+/// at once.
+inline double depth_for(const Mode& mode) { return std::holds_alternative<TimeStepping>(mode) ? 1e-9 : 0.0; }
+
 /// Name and setting of a mode.
 inline std::pair<std::string, std::string> described(const Mode& mode) {
   if (const auto* events = std::get_if<EventDriven>(&mode)) return {events_name, setting(*events)};

@@ -23,9 +23,6 @@ Rolled rolled(const Downhill& at, double time, const Mode& mode) {
   return result;
 }
 
-/// Time stepping starts a little inside, so that it sees the contact at once.
-double depth_for(const Mode& mode) { return std::holds_alternative<TimeStepping>(mode) ? 1e-9 : 0.0; }
-
 void add_inclines(Page& page, const Mode& mode) {
   const Clock clock;
   Comparison distance, speed, spin;

@@ -43,7 +43,7 @@ void add_cradle(Page& page, SolverChain& chain) {
   page.rows.push_back(solver_row("chain", "velocities after it [m/s]", velocities, clock.seconds()));
 }
 
-constexpr double step = 1e-3;  // over which weight acts [s]
+constexpr double weight_step = 1e-3;  // over which weight acts [s]
 
 void add_stacks(Page& page, SolverChain& chain) {
   const Json data = reference("contacts_planar.json", "static_stack");
@@ -65,7 +65,7 @@ void add_stacks(Page& page, SolverChain& chain) {
           line[2 * i - 1] = -x;
         }
         rows.h.push_back(line);
-        b.push_back(i == 0 ? -g * step : 0.0);  // all fall alike: only the lowest approaches
+        b.push_back(i == 0 ? -g * weight_step : 0.0);  // all fall alike: only the lowest approaches
       }
     }
     const std::vector<double> impulse = solved(problem_of(rows, b), chain);
@@ -78,7 +78,7 @@ void add_stacks(Page& page, SolverChain& chain) {
     const std::size_t contacts = blocks ? 2 : 1;
     for (std::size_t i = 0; i < impulse.size(); ++i) {
       const std::size_t level = i / contacts;
-      const double force = impulse[i] / step, reference = expected[level].get<double>();
+      const double force = impulse[i] / weight_step, reference = expected[level].get<double>();
       forces(force, reference);
       curve.rows.push_back({static_cast<double>(level), force, reference});
     }
@@ -105,12 +105,14 @@ void add_pyramid(Page& page, SolverChain& chain) {
                         {-s, -c, 0, 0, s, c},
                         {0, 0, s, -c, -s, c}},
                   .inverse_mass = std::vector(6, 1.0)};
-  const std::vector<double> impulse = solved(problem_of(rows, {-g * step, -g * step, 0, 0, 0, 0}), chain);
+  const std::vector<double> impulse =
+      solved(problem_of(rows, {-g * weight_step, -g * weight_step, 0, 0, 0, 0}), chain);
   const std::array<std::pair<const char*, const char*>, 3> names{
       {{"floor_each", "floor"}, {"wall_each", "walls"}, {"top_pair_each", "upper disc"}}};
   for (std::size_t k = 0; k < names.size(); ++k) {
     Comparison forces;
-    for (std::size_t i = 2 * k; i < 2 * k + 2; ++i) forces(impulse[i] / step, of(data, names[k].first));
+    for (std::size_t i = 2 * k; i < 2 * k + 2; ++i)
+      forces(impulse[i] / weight_step, of(data, names[k].first));
     page.rows.push_back(solver_row(
         "chain", std::string("force of the ") + names[k].second + " in a pyramid of three discs [N]", forces,
         clock.seconds()));
