@@ -41,12 +41,13 @@ passed=$((total - failed - skipped))
 
 # Of a part of a folder (CAROM_TEST_PARTS) each of its tests counts, as its program says; one that ends before it says
 # so is one that failed.
-sum_of() { grep -oE "$1" "build/$preset/Testing/Temporary/LastTest.log" | tr -dc '0-9\n' | awk '{ s += $1 } END { print s + 0 }'; }
+said="build/$preset/Testing/Temporary/LastTest.log"
+sum_of() { { grep -oE "$1" "$said" || true; } | tr -dc '0-9\n' | awk '{ s += $1 } END { print s + 0 }'; }
 if grep -qE '/(fast|long)_part_[0-9]+ ' "$log"; then
   whole=$(grep -cE '/(fast|long)_part_[0-9]+ .* Passed +[0-9.]+ sec$' "$log" || true)
   passed=$((passed - whole + $(sum_of '^\[  PASSED  \] [0-9]+ tests?\.')))
-  said=$(grep -cE '^\[  FAILED  \] [0-9]+ tests?, listed below' "build/$preset/Testing/Temporary/LastTest.log" || true)
-  failed=$((failed - said + $(sum_of '^\[  FAILED  \] [0-9]+ tests?, listed below')))
+  failing=$(grep -cE '^\[  FAILED  \] [0-9]+ tests?, listed below' "$said" || true)
+  failed=$((failed - failing + $(sum_of '^\[  FAILED  \] [0-9]+ tests?, listed below')))
   skipped=$((skipped + $(sum_of '^\[  SKIPPED \] [0-9]+ tests?, listed below')))
 fi
 
