@@ -25,6 +25,13 @@ double group_rho(const ContactProblem& problem, const RowGroup& group) {
   return trace > 0.0 ? 1.0 / trace : 0.0;
 }
 
+// An impulse of a piece within its bounds.
+double within(ModeEquations::Piece piece, double impulse, double lower, double upper) {
+  if (piece == ModeEquations::Piece::lower) return lower;
+  if (piece == ModeEquations::Piece::upper) return upper;
+  return std::clamp(impulse, lower, upper);
+}
+
 }  // namespace
 
 Residual NewtonPolish::judge(const ContactProblem& problem, std::span<const double> impulse) {
@@ -32,45 +39,34 @@ Residual NewtonPolish::judge(const ContactProblem& problem, std::span<const doub
   return residual(problem, impulse, xi_);
 }
 
-// Row of the Jacobian  own * e_row + of_xi * rho * W_row; the map's value is set by the caller.
-void NewtonPolish::set_row(const ContactProblem& problem, std::size_t row, double own, double of_xi,
-                           double rho) {
-  const std::size_t n = xi_.size();
-  double* out = jacobian_.data() + row * n;
-  const double* const w = problem.matrix().data() + row * n;
-  for (std::size_t j = 0; j < n; ++j) out[j] = of_xi * rho * w[j];
-  out[row] += own;
-}
-
-void NewtonPolish::linearise_disc(const ContactProblem& problem, std::size_t row, double rho) {
+// Row `tangent` (0 or 1) of a disc that begins at a row, into row_ and its map. With m = P - rho xi, u = m /
+// |m|
+//   F = P - r u:  dF = dP - mu u dP_n - (r / |m|) (I - u u^T) (dP - rho dxi)   outside, F = rho xi inside.
+void NewtonPolish::linearise_disc(const ContactProblem& problem, std::size_t row, std::size_t tangent,
+                                  double rho) {
   const std::size_t n = xi_.size();
   const RowSet& set = problem.sets()[row];
   const auto bound = static_cast<std::size_t>(set.bound);
   const double radius = set.coefficient * std::max(trial_[bound], 0.0);
   const double m[2] = {trial_[row] - rho * xi_[row], trial_[row + 1] - rho * xi_[row + 1]};
   const double length = std::hypot(m[0], m[1]);
+  const double* const own_w = problem.matrix().data() + (row + tangent) * n;
   if (length <= radius) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      set_row(problem, row + k, 0.0, 1.0, rho);
-      map_[row + k] = rho * xi_[row + k];
-    }
+    for (std::size_t j = 0; j < n; ++j) row_[j] = rho * own_w[j];
+    map_[row + tangent] = rho * xi_[row + tangent];
     return;
   }
-  // F = P - r u, u = m / |m|:  dF = dP - mu u dP_n - (r / |m|) (I - u u^T) (dP - rho dxi)
   const double u[2] = {m[0] / length, m[1] / length};
-  for (std::size_t k = 0; k < 2; ++k) {
-    double* out = jacobian_.data() + (row + k) * n;
-    for (std::size_t j = 0; j < n; ++j) out[j] = 0.0;
-    for (std::size_t l = 0; l < 2; ++l) {
-      const double projector = radius / length * ((k == l ? 1.0 : 0.0) - u[k] * u[l]);
-      const double* const w = problem.matrix().data() + (row + l) * n;
-      for (std::size_t j = 0; j < n; ++j) out[j] += projector * rho * w[j];
-      out[row + l] -= projector;
-    }
-    out[row + k] += 1.0;
-    out[bound] -= set.coefficient * u[k];
-    map_[row + k] = trial_[row + k] - radius * u[k];
+  std::fill(row_.begin(), row_.end(), 0.0);
+  for (std::size_t l = 0; l < 2; ++l) {
+    const double projector = radius / length * ((tangent == l ? 1.0 : 0.0) - u[tangent] * u[l]);
+    const double* const w = problem.matrix().data() + (row + l) * n;
+    for (std::size_t j = 0; j < n; ++j) row_[j] += projector * rho * w[j];
+    row_[row + l] -= projector;
   }
+  row_[row + tangent] += 1.0;
+  row_[bound] -= set.coefficient * u[tangent];
+  map_[row + tangent] = trial_[row + tangent] - radius * u[tangent];
 }
 
 // The map of a row that is none of a disc, at the trial.
@@ -96,26 +92,73 @@ NewtonPolish::RowMap NewtonPolish::map_of(const ContactProblem& problem, std::si
   return {Piece::lower, trial_[i] - lower, slope > 0.0 ? -slope : 0.0};
 }
 
-void NewtonPolish::linearise(const ContactProblem& problem) {
+// Notes the piece that each row stands in at the trial, and what those at bounds follow.
+void NewtonPolish::find_pieces(const ContactProblem& problem) {
   equations_.pieces.assign(xi_.size(), Piece::disc);
+  equations_.rows.clear();
+  slopes_.assign(xi_.size(), 0.0);
   for (const RowGroup& group : problem.groups()) {
     const double rho = group_rho(problem, group);
     const auto last = static_cast<std::size_t>(group.first + group.size);
     for (auto i = static_cast<std::size_t>(group.first); i < last; ++i) {
-      if (problem.sets()[i].kind == SetKind::bounded_disc) {
-        linearise_disc(problem, i++, rho);
-        continue;
+      if (problem.sets()[i].kind != SetKind::bounded_disc) {
+        const RowMap map = map_of(problem, i, rho);
+        equations_.pieces[i] = map.piece;
+        slopes_[i] = map.slope;
       }
-      const RowMap map = map_of(problem, i, rho);
-      const bool is_free = map.piece == Piece::free;
-      set_row(problem, i, is_free ? 0.0 : 1.0, is_free ? 1.0 : 0.0, rho);
-      if (map.slope != 0.0) {
-        jacobian_[i * xi_.size() + static_cast<std::size_t>(problem.sets()[i].bound)] -= map.slope;
-      }
-      map_[i] = map.value;
-      equations_.pieces[i] = map.piece;
+      const Piece piece = equations_.pieces[i];
+      if (piece == Piece::free || piece == Piece::disc) equations_.rows.push_back(i);
     }
   }
+}
+
+// Adds row_ to the equations: what follows a bound is put in its place, what stands still is left out.
+void NewtonPolish::add_row(const ContactProblem& problem) {
+  for (std::size_t i = row_.size(); i-- > 0;) {
+    if (slopes_[i] != 0.0) row_[static_cast<std::size_t>(problem.sets()[i].bound)] += slopes_[i] * row_[i];
+  }
+  for (const std::size_t i : equations_.rows) jacobian_.push_back(row_[i]);
+}
+
+// The equations of the pieces, at a trial within them.
+void NewtonPolish::linearise(const ContactProblem& problem) {
+  const std::size_t n = xi_.size();
+  row_.resize(n);
+  jacobian_.clear();
+  for (const RowGroup& group : problem.groups()) {
+    const double rho = group_rho(problem, group);
+    const auto last = static_cast<std::size_t>(group.first + group.size);
+    for (auto i = static_cast<std::size_t>(group.first); i < last; ++i) {
+      if (equations_.pieces[i] == Piece::free) {
+        const double* const w = problem.matrix().data() + i * n;
+        for (std::size_t j = 0; j < n; ++j) row_[j] = rho * w[j];
+        map_[i] = rho * xi_[i];
+        add_row(problem);
+      } else if (equations_.pieces[i] == Piece::disc) {
+        for (std::size_t tangent = 0; tangent < 2; ++tangent) {
+          linearise_disc(problem, i, tangent, rho);
+          add_row(problem);
+        }
+        ++i;
+      }
+    }
+  }
+  const std::size_t size = equations_.rows.size();
+  equations_.factors.factor(jacobian_, size, size, rank_tolerance);
+}
+
+// One step of the trial by equations, with the map at hand.
+void NewtonPolish::step_by(const ContactProblem& problem, ModeEquations& equations, bool by_factors) {
+  of_rows_.clear();
+  for (const std::size_t i : equations.rows) of_rows_.push_back(map_[i]);
+  step_.resize(of_rows_.size());
+  if (by_factors) {
+    equations.factors.solve_by_factors(of_rows_, step_);
+  } else {
+    equations.factors.solve(of_rows_, step_);
+  }
+  for (std::size_t k = 0; k < step_.size(); ++k) trial_[equations.rows[k]] -= step_[k];
+  restore_sets(problem, equations.pieces);
 }
 
 // Writes the map at the trial. False where a row has another piece than in the equations that are factored.
@@ -133,7 +176,7 @@ bool NewtonPolish::keeps_pieces(const ContactProblem& problem, std::span<const P
   return true;
 }
 
-// Rounding of a step leaves impulses beside their sets; a row at a bound goes back to the bound exactly.
+// Takes impulses into their sets, and those of rows at bounds to these.
 void NewtonPolish::restore_sets(const ContactProblem& problem, std::span<const Piece> pieces) {
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     const RowSet& set = problem.sets()[i];
@@ -142,11 +185,11 @@ void NewtonPolish::restore_sets(const ContactProblem& problem, std::span<const P
         trial_[i] = pieces[i] == Piece::lower ? 0.0 : std::max(trial_[i], 0.0);
         break;
       case SetKind::interval:
-        trial_[i] = std::clamp(trial_[i], set.lower, set.upper);
+        trial_[i] = within(pieces[i], trial_[i], set.lower, set.upper);
         break;
       case SetKind::bounded_interval: {
         const double limit = set.coefficient * std::max(trial_[static_cast<std::size_t>(set.bound)], 0.0);
-        trial_[i] = std::clamp(trial_[i], -limit, limit);
+        trial_[i] = within(pieces[i], trial_[i], -limit, limit);
         break;
       }
       case SetKind::bounded_disc: {
@@ -172,18 +215,16 @@ Residual NewtonPolish::improve(const ContactProblem& problem, std::span<double> 
   best_.assign(impulse.begin(), impulse.end());
   xi_.resize(n);
   map_.resize(n);
-  step_.resize(n);
-  jacobian_.resize(n * n);
   equations_.pieces.clear();
   Residual best = judge(problem, trial_);
   int idle = 0;
   const auto goes_on = [&] { return best.value > round_off && std::isfinite(best.value); };
   for (int k = 0; k < most_steps && idle < most_idle_steps && goes_on(); ++k) {
-    linearise(problem);
-    equations_.factors.factor(jacobian_, n, n, rank_tolerance);
-    equations_.factors.solve(map_, step_);
-    for (std::size_t i = 0; i < n; ++i) trial_[i] -= step_[i];
+    find_pieces(problem);
     restore_sets(problem, equations_.pieces);
+    problem.velocities(trial_, xi_);
+    linearise(problem);
+    step_by(problem, equations_, false);
     const Residual now = judge(problem, trial_);
     if (!std::isfinite(now.value)) break;
     idle = now.value < 0.5 * best.value ? 0 : idle + 1;
@@ -202,7 +243,6 @@ bool NewtonPolish::refine(const ContactProblem& problem, ModeEquations& equation
   trial_.assign(impulse.begin(), impulse.end());
   xi_.resize(n);
   map_.resize(n);
-  step_.resize(n);
   double last = std::numeric_limits<double>::infinity();
   for (;;) {
     problem.velocities(trial_, xi_, slot_velocity_);
@@ -215,9 +255,7 @@ bool NewtonPolish::refine(const ContactProblem& problem, ModeEquations& equation
     last = found.value;
     best_.assign(trial_.begin(), trial_.end());
     if (!keeps_pieces(problem, equations.pieces)) return false;
-    equations.factors.solve_by_factors(map_, step_);
-    for (std::size_t i = 0; i < n; ++i) trial_[i] -= step_[i];
-    restore_sets(problem, equations.pieces);
+    step_by(problem, equations, true);
   }
   if (found.value > last) {
     trial_.swap(best_);

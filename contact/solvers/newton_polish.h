@@ -16,7 +16,8 @@
 
 namespace carom {
 
-/// The equations of the modes of an answer, factored.
+/// The equations of the modes of an answer, factored: of rows whose velocity is zero, and of discs. The other
+/// rows stand at bounds, and follow.
 struct ModeEquations {
   /// Linear pieces of the natural map of a row.
   enum class Piece : std::uint8_t {
@@ -26,8 +27,9 @@ struct ModeEquations {
     upper,  ///< at the upper bound
     disc    ///< of a disc: no piece
   };
-  std::vector<Piece> pieces;  ///< by row; empty: no equations
-  RankRevealingQr factors;    ///< of their matrix
+  std::vector<Piece> pieces;      ///< by row; empty: no equations
+  std::vector<std::size_t> rows;  ///< of the equations, and of their unknowns
+  RankRevealingQr factors;        ///< of their matrix
 
   /// True of the equations of a problem of as many rows.
   [[nodiscard]] bool are_of(const ContactProblem& problem) const {
@@ -37,8 +39,8 @@ struct ModeEquations {
 
 /// Newton's method on the natural map F(P) = P - proj_C(P - rho xi) of the certificate (residual.h). Each
 /// row's linear piece is its present mode (zero, at a bound, free; a sliding disc has a curved one), so that
-/// one step solves the system of the modes and further steps change modes. Singular systems (forces not
-/// unique) get a basic correction, which keeps the answer near the given one.
+/// one step solves the system of the modes and further steps change modes. Rows at bounds are eliminated.
+/// Singular systems (forces not unique) get a basic correction, which keeps the answer near the given one.
 class CAROM_API NewtonPolish {
 public:
   /// A residual at rounding: further steps only move noise.
@@ -67,13 +69,17 @@ private:
   };
   [[nodiscard]] RowMap map_of(const ContactProblem& problem, std::size_t row, double rho) const;
   [[nodiscard]] bool keeps_pieces(const ContactProblem& problem, std::span<const Piece> pieces);
+  void find_pieces(const ContactProblem& problem);
   void linearise(const ContactProblem& problem);
-  void linearise_disc(const ContactProblem& problem, std::size_t row, double rho);
-  void set_row(const ContactProblem& problem, std::size_t row, double own, double of_xi, double rho);
+  void linearise_disc(const ContactProblem& problem, std::size_t row, std::size_t tangent, double rho);
+  void add_row(const ContactProblem& problem);
+  void step_by(const ContactProblem& problem, ModeEquations& equations, bool by_factors);
   void restore_sets(const ContactProblem& problem, std::span<const Piece> pieces);
   Residual judge(const ContactProblem& problem, std::span<const double> impulse);
 
-  std::vector<double> trial_, best_, xi_, jacobian_, map_, step_, slot_velocity_;
+  std::vector<double> trial_, best_, xi_, map_, slot_velocity_;
+  std::vector<double> row_, slopes_;               // of one row, of all rows that follow a bound
+  std::vector<double> jacobian_, of_rows_, step_;  // of the equations
   ModeEquations equations_;
 };
 

@@ -60,7 +60,7 @@ TEST(NewtonPolish, EquationsOfAProblemSolveOneNearby) {
     Solved known;
     if (!solve(seed, known)) continue;
     // Forces that are not unique may need another of their answers.
-    if (known.equations.factors.rank() < known.impulse.size()) continue;
+    if (known.equations.factors.rank() < known.equations.rows.size()) continue;
     ++solved;
     const ContactProblem next = grown(known.problem, 1e-4, seed);
     std::vector<double> impulse = known.impulse;
