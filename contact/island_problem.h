@@ -44,6 +44,8 @@ struct IslandOptions {
   /// Contacts that jam, and have no answer or one that adds energy by impulses without measure, are solved
   /// with e = 0 (plastic_jams.h).
   bool plastic_jams = false;
+  /// Impulses that are not unique are to be basic ones (ContactSolution::basic): modes are read off them.
+  bool basic_impulses = false;
 };
 
 /// Where the solvers of an island start from.
@@ -68,7 +70,9 @@ struct IslandAnswer : ContactSolution {
 /// Problem, matrix and answer of an island. Reuse it: its memory is kept.
 class CAROM_API IslandProblem {
 public:
-  explicit IslandProblem(const IslandOptions& options = {}) : options_(options) {}
+  explicit IslandProblem(const IslandOptions& options = {}) : options_(options) {
+    answer_.basic = options.basic_impulses;
+  }
   /// Takes constraints, and the velocities v^- of all bodies before the step or impact. The answer before is
   /// forgotten, unless solvers are to start from it; respond() is next, unless a response is given. build()
   /// and respond() throw SolverError for more constraints than W in full has room for. \param response makes

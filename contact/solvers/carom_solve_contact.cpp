@@ -35,8 +35,8 @@ constexpr std::string_view usage = R"(usage: carom-solve-contact FILE [--solver 
 Solves the contact problem in FILE and prints the answer with its certificate.
 
   --solver NAME  chain (default), all (every solver beside the chain), single-contact,
-                 principal-pivoting (on the paper's form), lemke, enumeration, disc-sweeps (of
-                 problems with discs), nonlinear-cg (of problems in factors)
+                 principal-pivoting (on the paper's form), lemke, enumeration, dense-sweeps (of
+                 many rows, or with discs), nonlinear-cg (of problems in factors)
   --json         prints JSON instead of tables
   --history CSV  also writes the residual of each solver asked after every sweep, and the seconds that it
                  took; of `chain` those of the solver whose answer it took

@@ -18,14 +18,14 @@ enum class SolverId : std::uint8_t {
   single_contact,
   principal_pivoting,
   lemke,
-  disc_sweeps,  ///< of problems with discs only
+  dense_sweeps,  ///< of problems with discs, or of many rows
   enumeration,
   nonlinear_cg  ///< of problems in factors only, and the only one of these
 };
 
 /// All solvers, in the order of SolverId.
 inline constexpr std::array all_solvers{SolverId::single_contact, SolverId::principal_pivoting,
-                                        SolverId::lemke,          SolverId::disc_sweeps,
+                                        SolverId::lemke,          SolverId::dense_sweeps,
                                         SolverId::enumeration,    SolverId::nonlinear_cg};
 
 /// Number of solvers in SolverId.
@@ -33,7 +33,7 @@ inline constexpr std::size_t solver_count = all_solvers.size();
 
 /// Names of the solvers, in the order of SolverId.
 inline constexpr std::array<std::string_view, solver_count> solver_names{
-    "single contact", "principal pivoting", "Lemke", "disc sweeps", "enumeration", "nonlinear CG"};
+    "single contact", "principal pivoting", "Lemke", "dense sweeps", "enumeration", "nonlinear CG"};
 
 /// Name of a solver.
 [[nodiscard]] CAROM_API std::string_view to_string(SolverId solver);

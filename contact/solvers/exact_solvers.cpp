@@ -39,8 +39,8 @@ ContactSolver* ExactSolvers::solver(SolverId id) {
       return &pivoting_;
     case SolverId::lemke:
       return &lemke_;
-    case SolverId::disc_sweeps:
-      return &disc_sweeps_;
+    case SolverId::dense_sweeps:
+      return &dense_sweeps_;
     case SolverId::nonlinear_cg:
     case SolverId::enumeration:
       break;
@@ -56,10 +56,11 @@ void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> m
   // An answer that came with the problem has been tried by sweeps and their polish. Where it is good enough,
   // Lemke's method, which has to repeat its path then, finds hardly better ones at many times the cost.
   const bool suffices = state.report.residual <= tolerated_residual;
+  const bool sweeps = !state.basic || has_discs(problem);
   const bool done = (!knows_all && leave_open(problem, state)) || (!alone && fold(problem, state)) ||
+                    (!alone && sweeps && attempt(problem, SolverId::dense_sweeps, state)) ||
                     attempt(problem, first, state) || suffices || attempt(problem, SolverId::lemke, state) ||
-                    (has_discs(problem) && attempt(problem, SolverId::disc_sweeps, state)) ||
-                    approach(problem, state);
+                    (alone && attempt(problem, SolverId::dense_sweeps, state)) || approach(problem, state);
   if (!done && !(state.report.residual <= tolerated_residual)) {
     attempt(problem, SolverId::enumeration, state);
   }

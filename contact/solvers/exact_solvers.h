@@ -7,7 +7,7 @@
 #include <carom/contact/solvers/contact_problem.h>
 #include <carom/contact/solvers/contact_report.h>
 #include <carom/contact/solvers/contact_solver.h>
-#include <carom/contact/solvers/disc_sweeps_solver.h>
+#include <carom/contact/solvers/dense_sweeps_solver.h>
 #include <carom/contact/solvers/mirror_fold.h>
 #include <carom/contact/solvers/newton_polish.h>
 #include <carom/contact/solvers/pivoting_solvers.h>
@@ -31,15 +31,17 @@ struct ExactAttempt {
   bool proved_unsolvable = false;            ///< by the last one
   int applicable = 0;                        ///< solvers that could be tried
   double aim = accepted_residual;            ///< from above which on problems nearby are asked, too
+  bool basic = false;                        ///< impulses that are not unique are to be basic ones
 };
 
-/// One contact exactly by its modes, several by principal pivoting, then Lemke; where these leave more than
-/// the aim by problems nearby that are regular; up to three by enumeration of the modes when all
-/// else failed. Discs are for sweeps alone (disc_sweeps_solver.h). An answer of sweeps over factors that is
-/// good enough is only shown to principal pivoting. Contacts that all separate, and one with rolling
-/// resistance, get no impulses: where friction is strong the solvers might find another solution. A problem
-/// that is its own image in a mirror gets an answer that is so too (mirror_fold.h), where there is one. Reuse
-/// it: its memory is kept.
+/// One contact exactly by its modes, several by principal pivoting, then Lemke, many and those with discs
+/// first by sweeps (dense_sweeps_solver.h), those of the plane only where impulses need not be basic, as
+/// pivoting finds them; where these leave more than the aim by problems nearby that are regular; up to three
+/// by enumeration of the modes when all else failed. An answer of sweeps over factors that is good enough is
+/// only shown to principal pivoting. Contacts that all separate, and one with rolling resistance, get no
+/// impulses: where friction is strong the solvers might find another solution. A problem that is its own
+/// image in a mirror gets an answer that is so too (mirror_fold.h), where there is one. Reuse it: its memory
+/// is kept.
 class ExactSolvers {
 public:
   /// Tries solvers until an answer is accepted, and concludes.
@@ -48,8 +50,8 @@ public:
   bool attempt(const ContactProblem& problem, SolverId id, ExactAttempt& state);
   /// Judges what was found, and reads the modes off it.
   static void conclude(const ContactProblem& problem, std::span<ContactMode> modes, ExactAttempt& state);
-  /// Has every sweep over problems with discs looked at from now on.
-  void set_watch(SweepWatch watch) { disc_sweeps_.set_watch(std::move(watch)); }
+  /// Has every sweep over dense problems looked at from now on.
+  void set_watch(SweepWatch watch) { dense_sweeps_.set_watch(std::move(watch)); }
 
 private:
   [[nodiscard]] ContactSolver* solver(SolverId id);
@@ -63,7 +65,7 @@ private:
   SingleContactSolver single_;
   PrincipalPivotingSolver pivoting_;
   LemkeSolver lemke_;
-  DiscSweepsSolver disc_sweeps_;
+  DenseSweepsSolver dense_sweeps_;
   SolutionList list_;
   NewtonPolish polish_;
   std::vector<double> trial_, trial_xi_;

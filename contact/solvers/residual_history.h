@@ -32,7 +32,7 @@ struct ResidualHistory {
   HistoryPoint answer{};               ///< polished and judged, as SolverChain::solve_with() gives it
 };
 
-/// Solves a grouped problem by one solver and looks at it after every sweep: of `disc_sweeps` and
+/// Solves a grouped problem by one solver and looks at it after every sweep: of `dense_sweeps` and
 /// `nonlinear_cg`; others have an answer only. \param budget of `nonlinear_cg`. Throws std::invalid_argument
 /// for a budget that cannot be, as SolverChain::set_budget().
 [[nodiscard]] CAROM_API ResidualHistory residual_history(const ContactProblem& problem, SolverId solver,

@@ -154,12 +154,13 @@ SolverChain& SolverChain::operator=(SolverChain&&) noexcept = default;
 
 ContactReport SolverChain::solve(const ContactProblem& problem, std::span<double> impulse) {
   ContactReport report;
-  solve(problem, impulse, report);
+  solve(problem, impulse, report, false);
   return report;
 }
 
 /// The report is built where the caller reads it: copying it would cost as much as solving a contact.
-void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report) {
+void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report,
+                        bool basic) {
   Workspace& work = *work_;
   if (work.solve_regular(problem, impulse, report)) return;
   demand_grouped(problem, impulse);
@@ -173,7 +174,8 @@ void SolverChain::solve(const ContactProblem& problem, std::span<double> impulse
   ExactAttempt attempt{.impulse = impulse,
                        .xi = work.xi,
                        .report = report,
-                       .aim = work.capped ? tolerated_residual : accepted_residual};
+                       .aim = work.capped ? tolerated_residual : accepted_residual,
+                       .basic = basic};
   work.exact.solve(problem, work.modes, attempt);
   if (work.capped && !report.usable() && work.is_nearly_solved(problem, impulse, report)) {
     work.take_at_cap(attempt, report);
@@ -217,7 +219,7 @@ void SolverChain::solve(const ContactProblem& problem, ContactSolution& solution
     work.start.assign(solution.impulse.begin(), solution.impulse.end());
     work.start_modes.assign(solution.modes.begin(), solution.modes.end());
   }
-  solve(problem, solution.impulse, report);
+  solve(problem, solution.impulse, report, solution.basic);
   solution.modes.assign(work.modes.begin(), work.modes.end());
   solution.changed_modes = warm && solution.modes != work.start_modes;
   if (!solution.changed_modes || several || !keep(work.start_modes, work.start)) return;

@@ -31,17 +31,20 @@ struct ContactSolution {
   std::vector<double> response;
   bool known = false;          ///< a start: an answer, usable or not, to a problem of the same rows
   bool changed_modes = false;  ///< the answer has other modes than what it started from
+  /// In: impulses of a problem in full that are not unique are to be basic ones, as pivoting finds them:
+  /// those of rows that follow from others are zero. Many contacts take several times as long then.
+  bool basic = false;
 };
 
 /// Solves contact problems: one contact exactly by its modes, several by principal pivoting (Johansson 1999),
 /// then Lemke, then by regular problems nearby, and up to three by enumeration of the modes when all else
-/// failed; problems with discs by sweeps over these (exact_solvers.h). Of several solutions of one contact
-/// the one with the smallest normal impulse; of several contacts that without impulses where it is one, else
-/// it does not look for others (SolutionList does). A problem in factors is left to sweeps
-/// (nonlinear_cg_solver.h): `solved` up to the residual of the budget; where they do not reach it a small one
-/// is left to the exact solvers (large_problem_solver.h), and a large one is accepted_at_cap or not_solved,
-/// with the modes of its answer. Deterministic; keeps nothing between calls but statistics and memory.
-/// Allocates only while problems grow. Not for use by two threads at once.
+/// failed; many contacts, and problems with discs, first by sweeps and Newton's method (exact_solvers.h). Of
+/// several solutions of one contact the one with the smallest normal impulse; of several contacts that
+/// without impulses where it is one, else it does not look for others (SolutionList does). A problem in
+/// factors is left to sweeps (nonlinear_cg_solver.h): `solved` up to the residual of the budget; where they
+/// do not reach it a small one is left to the exact solvers (large_problem_solver.h), and a large one is
+/// accepted_at_cap or not_solved, with the modes of its answer. Deterministic; keeps nothing between calls
+/// but statistics and memory. Allocates only while problems grow. Not for use by two threads at once.
 class CAROM_API SolverChain {
 public:
   SolverChain();
@@ -77,7 +80,7 @@ public:
   /// and 0 <= accepted.
   void set_budget(const SweepBudget& budget);
 
-  /// Has every sweep of `disc_sweeps` and `nonlinear_cg` looked at from now on; empty: no more.
+  /// Has every sweep of `dense_sweeps` and `nonlinear_cg` looked at from now on; empty: no more.
   void set_watch(const SweepWatch& watch);
 
   /// xi = W P + b of the last answer; gamma^+ = xi - E gamma^-. Valid until the next solve.
@@ -96,7 +99,7 @@ public:
   void reset_statistics();
 
 private:
-  void solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report);
+  void solve(const ContactProblem& problem, std::span<double> impulse, ContactReport& report, bool basic);
 
   struct Workspace;
   Owner<Workspace> work_;

@@ -40,11 +40,7 @@ void GroupFailure::fail(const std::string& what, std::vector<std::string> parts,
       message += pressed_by(assembly.system(), problem->constraints());
     if (!report.usable()) message += carried_by(assembly.system(), problem->constraints());
   }
-  if (problem == nullptr) {
-    message += uneven_masses_of(*model_);
-  } else if (!problem->report().usable()) {
-    message += uneven_masses(*problem);
-  }
+  message += problem == nullptr ? uneven_masses_of(*model_) : uneven_masses(*problem);
   if (parts.empty()) {
     parts.push_back(assembly.system().name(model_->first_body()));
     message += "; component of " + parts.front();

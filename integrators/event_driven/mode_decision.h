@@ -79,7 +79,7 @@ private:
   void complete_modes(SmoothMotion& motion, MotionSample& now, std::span<Candidate> candidates);
   void list_closed(std::span<const Candidate> candidates);
 
-  IslandProblem problem_;
+  IslandProblem problem_{{.basic_impulses = true}};
   SolutionList solutions_;
   NewtonPolish polish_;
   ConstraintSet contacts_;

@@ -63,8 +63,8 @@ CAROM_PYTHON_ENUM(carom::EnergyFlow, "EnergyFlow", "external", "intervention", "
 CAROM_PYTHON_ENUM(carom::FindingKind, "FindingKind", "law_without_effect", "contact_without_law",
                   "touches_nothing", "untouched_obstacle", "body_without_shape", "keep_without_joint",
                   "hidden_by_filter", "open_joint")
-CAROM_PYTHON_ENUM(carom::SolverId, "SolverId", "single_contact", "principal_pivoting", "lemke", "disc_sweeps",
-                  "enumeration", "nonlinear_cg")
+CAROM_PYTHON_ENUM(carom::SolverId, "SolverId", "single_contact", "principal_pivoting", "lemke",
+                  "dense_sweeps", "enumeration", "nonlinear_cg")
 CAROM_PYTHON_ENUM(carom::SetKind, "SetKind", "half_line", "interval", "bounded_interval", "bounded_disc",
                   "proportional")
 CAROM_PYTHON_ENUM(carom::LogLevel, "LogLevel", "trace", "debug", "info", "warning", "error", "off")

@@ -178,8 +178,8 @@ def test_residuals_of_a_solver_by_sweep(tmp_path):
     friction = carom.RowSet(kind="bounded_disc", bound=0, coefficient=0.3)
     w = [[2.0, -0.5, 0.0], [-0.5, 3.0, 0.0], [0.0, 0.0, 3.0]]
     problem = carom.ContactProblem(w, [-1.0, 0.5, 0.2], [carom.RowSet(), friction, friction])
-    history = carom.residual_history(problem, "disc_sweeps")
-    assert history.solver == "disc sweeps" and history.outcome == carom.Outcome.solved
+    history = carom.residual_history(problem, "dense_sweeps")
+    assert history.solver == "dense sweeps" and history.outcome == carom.Outcome.solved
     assert [point.iterations for point in history.sweeps] == list(range(1, len(history.sweeps) + 1))
     assert history.answer.residual < 1e-15 and history.answer.seconds >= 0.0
     of_plane = carom.ContactProblem([[2.0]], [-1.0], [carom.RowSet()])

@@ -68,7 +68,7 @@ TEST(ResidualHistory, IsThatOfTheAnswer) {
 }
 
 // Contacts in space, each of which meets the next one.
-TEST(ResidualHistory, OfDiscSweepsFallsToRounding) {
+TEST(ResidualHistory, OfDenseSweepsFallsToRounding) {
   constexpr int contacts = 8, rows = 3 * contacts;
   ContactProblem problem;
   problem.reset(rows);
@@ -82,7 +82,7 @@ TEST(ResidualHistory, OfDiscSweepsFallsToRounding) {
         .kind = SetKind::bounded_disc, .bound = i - i % 3, .coefficient = 0.3};
   }
   problem.group();
-  const ResidualHistory history = residual_history(problem, SolverId::disc_sweeps);
+  const ResidualHistory history = residual_history(problem, SolverId::dense_sweeps);
   expect_history(history, 1);
   EXPECT_EQ(history.outcome, Outcome::solved);
   EXPECT_GT(history.sweeps.front().residual, 1e-3);

@@ -282,7 +282,7 @@ TEST(SlidingContact, EverySolverIsRightOrSaysThatItIsNot) {
   // Where p < 0 the open solution is one that all of them start from.
   for (const SolverId solver : all_solvers) {
     // Of problems in factors only, of problems with discs only.
-    if (solver == SolverId::nonlinear_cg || solver == SolverId::disc_sweeps) continue;
+    if (solver == SolverId::nonlinear_cg || solver == SolverId::dense_sweeps) continue;
     EXPECT_EQ(solved[static_cast<std::size_t>(solver)], solvable) << to_string(solver);
   }
 }

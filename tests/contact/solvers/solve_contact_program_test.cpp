@@ -216,10 +216,10 @@ TEST_F(SolveContactProgram, WritesResidualsBySweep) {
   problem.sets()[1] = problem.sets()[2] = {.kind = SetKind::bounded_disc, .bound = 0, .coefficient = 0.3};
   problem.group();
   problem.save(path_);
-  const std::vector<std::string> sweeps = lines_of("--solver disc-sweeps --json");
+  const std::vector<std::string> sweeps = lines_of("--solver dense-sweeps --json");
   ASSERT_GT(sweeps.size(), 2U);
-  EXPECT_TRUE(sweeps[1].starts_with("disc sweeps,sweep,,1,")) << sweeps[1];
-  EXPECT_TRUE(sweeps.back().starts_with("disc sweeps,answer,solved,")) << sweeps.back();
+  EXPECT_TRUE(sweeps[1].starts_with("dense sweeps,sweep,,1,")) << sweeps[1];
+  EXPECT_TRUE(sweeps.back().starts_with("dense sweeps,answer,solved,")) << sweeps.back();
   std::filesystem::remove(table);
 }
 

@@ -82,7 +82,7 @@ TEST(SolverChain, FallsBackInSpace) {
   std::vector<double> p(3);
   const ContactReport report = chain.solve(problem, p);
   EXPECT_EQ(report.outcome, Outcome::solved);
-  EXPECT_EQ(report.solver, "disc sweeps");
+  EXPECT_EQ(report.solver, "dense sweeps");
   EXPECT_LE(report.residual, 1e-15);
   EXPECT_EQ(chain.modes()[0], ContactMode::slip);
 }
@@ -309,7 +309,7 @@ TEST(SolverChain, EverySolverAloneIsJudgedAsInTheChain) {
       random.problem.velocities(p, xi);
       EXPECT_EQ(residual(random.problem, p, xi).value, report.residual);
       certified[static_cast<std::size_t>(id)] += report.usable();
-      if (id == SolverId::single_contact || id == SolverId::disc_sweeps) {
+      if (id == SolverId::single_contact || id == SolverId::dense_sweeps) {
         EXPECT_EQ(report.outcome, Outcome::not_solved);
         EXPECT_EQ(report.reason, "not applicable");
         EXPECT_FALSE(report.was_tried(id));
@@ -318,7 +318,7 @@ TEST(SolverChain, EverySolverAloneIsJudgedAsInTheChain) {
     }
   }
   EXPECT_EQ(certified[static_cast<std::size_t>(SolverId::single_contact)], 0);
-  EXPECT_EQ(certified[static_cast<std::size_t>(SolverId::disc_sweeps)], 0);
+  EXPECT_EQ(certified[static_cast<std::size_t>(SolverId::dense_sweeps)], 0);
   // Existence is guaranteed for these; Lemke and enumeration are complete there.
   EXPECT_EQ(certified[static_cast<std::size_t>(SolverId::lemke)], 200);
   EXPECT_EQ(certified[static_cast<std::size_t>(SolverId::enumeration)], 200);
@@ -341,7 +341,7 @@ TEST(SolverChain, NamesOfSolvers) {
   EXPECT_EQ(to_string(SolverId::single_contact), "single contact");
   EXPECT_EQ(to_string(SolverId::principal_pivoting), "principal pivoting");
   EXPECT_EQ(to_string(SolverId::lemke), "Lemke");
-  EXPECT_EQ(to_string(SolverId::disc_sweeps), "disc sweeps");
+  EXPECT_EQ(to_string(SolverId::dense_sweeps), "dense sweeps");
   EXPECT_EQ(to_string(SolverId::enumeration), "enumeration");
 }
 

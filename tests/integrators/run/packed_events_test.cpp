@@ -31,7 +31,7 @@ EventRecord full_record(double seed) {
   event.mode = ContactMode::slip_negative;
   event.outcome = Outcome::several_solutions;
   event.residual = seed * 1e-13;
-  event.solver = "disc sweeps";
+  event.solver = "dense sweeps";
   event.energy_gain = seed + 0.1;
   event.contact_work = -seed;
   event.restitution_factor = 0.25;
