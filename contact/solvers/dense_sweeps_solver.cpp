@@ -2,6 +2,7 @@
 // contacts, which cost pivoting a pivot each.
 
 #include <carom/contact/solvers/dense_sweeps_solver.h>
+#include <carom/contact/solvers/warm_start.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,8 @@ namespace carom {
 
 namespace {
 
-// The residual at which the iteration is done; equal to the accepted residual of the solver chain.
+// The residual at which the iteration is done where there are discs; equal to the accepted residual of the
+// solver chain.
 constexpr double target = 1e-12;
 
 // Sweeps between two attempts to finish by Newton's method grow by this factor, from this many on.
@@ -168,7 +170,7 @@ SolverAnswer DenseSweepsSolver::solve(const ContactProblem& problem, std::span<d
       best = reached.value;
       std::copy(trial_.begin(), trial_.end(), impulse.begin());
     }
-    if (best <= target) return {Outcome::solved, false, sweep, {}};
+    if (best <= (discs ? target : certified_start)) return {Outcome::solved, false, sweep, {}};
   }
   return {Outcome::not_solved, false, most, "sweep bound"};
 }

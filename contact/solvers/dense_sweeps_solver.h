@@ -30,7 +30,8 @@ inline constexpr int swept_rows = 16;
 /// order and solves each one for its own impulses (a lone row and a contact that slips in a known direction
 /// by clamping, a disc by its secular equation, alternating with its normal row), the others held. After 10,
 /// 30, 100, ... sweeps Newton's method on the modes reached so far tries to finish (newton_polish.h).
-/// Converges for most problems met in practice, proves nothing: solved (residual below 1e-12) or not_solved,
+/// Converges for most problems met in practice, proves nothing: solved (residual below 1e-12, without discs
+/// below certified_start) or not_solved,
 /// with the best impulses found.
 class CAROM_API DenseSweepsSolver final : public ContactSolver {
 public:

@@ -3,6 +3,7 @@
 #include <carom/contact/solvers/exact_solvers.h>
 
 #include <carom/contact/solvers/planar_certificate.h>
+#include <carom/contact/solvers/warm_start.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,8 +59,8 @@ void ExactSolvers::solve(const ContactProblem& problem, std::span<ContactMode> m
   const bool suffices = state.report.residual <= tolerated_residual;
   const bool sweeps = !state.basic || has_discs(problem);
   const bool done = (!knows_all && leave_open(problem, state)) || (!alone && fold(problem, state)) ||
-                    (!alone && sweeps && attempt(problem, SolverId::dense_sweeps, state)) ||
-                    attempt(problem, first, state) || suffices || attempt(problem, SolverId::lemke, state) ||
+                    (!alone && sweeps && sweep(problem, state)) || attempt(problem, first, state) ||
+                    suffices || attempt(problem, SolverId::lemke, state) ||
                     (alone && attempt(problem, SolverId::dense_sweeps, state)) || approach(problem, state);
   if (!done && !(state.report.residual <= tolerated_residual)) {
     attempt(problem, SolverId::enumeration, state);
@@ -181,6 +182,13 @@ bool ExactSolvers::solve_near(const ContactProblem& problem, double softness) {
     if (polish_.improve(near_, trial_, rescue_steps).value <= tolerated_residual) return true;
   }
   return false;
+}
+
+// Sweeps over several contacts. Pivoting may know better where their answer is not one of rounding: light
+// bodies among heavy ones move by what is left.
+bool ExactSolvers::sweep(const ContactProblem& problem, ExactAttempt& state) {
+  return attempt(problem, SolverId::dense_sweeps, state) &&
+         (has_discs(problem) || state.report.residual <= certified_start);
 }
 
 // Takes no impulses if these are an answer: of several solutions the one that does nothing. It is told as

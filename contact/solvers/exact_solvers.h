@@ -58,6 +58,7 @@ private:
   bool enumerate(const ContactProblem& problem, ExactAttempt& state);
   bool approach(const ContactProblem& problem, ExactAttempt& state);
   bool solve_near(const ContactProblem& problem, double softness);
+  bool sweep(const ContactProblem& problem, ExactAttempt& state);
   bool leave_open(const ContactProblem& problem, ExactAttempt& state);
   bool fold(const ContactProblem& problem, ExactAttempt& state);
   void keep(const Residual& found, SolverId id, Outcome outcome, bool degenerate, ExactAttempt& state);

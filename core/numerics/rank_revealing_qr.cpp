@@ -89,11 +89,9 @@ void RankRevealingQr::Column::measure(const double* column, std::size_t size) {
 }
 
 std::size_t RankRevealingQr::longest_column(std::size_t k) const {
-  // Of columns as long as each other the first: which basic solution is found is no matter of rounding then.
-  constexpr double longer = 1.0 + 1e-6;
   std::size_t best = k;
   for (std::size_t j = k + 1; j < columns_; ++j) {
-    if (column_[j].square > longer * column_[best].square) best = j;
+    if (column_[j].square > column_[best].square) best = j;
   }
   return best;
 }
