@@ -1,5 +1,6 @@
 """Ensembles with files: rows in them, what goes on after a crash or Ctrl-C, and what memory they take."""
 
+import functools
 import json
 import os
 import signal
@@ -94,7 +95,9 @@ def start(tmp_path, file, runs=300):
     marks = tmp_path / "marks"
     marks.mkdir(exist_ok=True)
     words = [sys.executable, "-c", DRIVER, str(Path(__file__).parent), str(file), str(marks), str(runs)]
-    return subprocess.Popen(words, stdout=subprocess.PIPE, text=True, start_new_session=True)
+    # Shells have what they run in the background ignore Ctrl-C, and so would the driver then.
+    heed = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    return subprocess.Popen(words, stdout=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heed)
 
 
 @pytest.mark.parametrize("format_", FORMATS)
